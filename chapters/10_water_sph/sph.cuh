@@ -1,0 +1,176 @@
+/// @file
+/// Water by smoothed particle hydrodynamics: a density and pressure pass, then a pass for the forces.
+#pragma once
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+#include "05_spatial_grid/counting_sort.cuh"
+#include "10_water_sph/smoothing_kernels.cuh"
+#include "10_water_sph/walls.cuh"
+
+namespace sph {
+
+/// How pressure follows from density. Both have the same slope, c^2, at the rest density.
+enum class EquationOfState {
+    linear,  ///< p = c^2 (rho - rho0), Müller et al. 2003
+    tait,    ///< p = (rho0 c^2 / 7) ((rho / rho0)^7 - 1), stiffer under compression
+};
+
+/// What the water is made of. Constant during a run; passed to the kernels by value.
+struct Fluid {
+    float support_m = 0.1f;               ///< smoothing kernels end here (h); about 2 particle spacings
+    float mass_kg = 0.1f;                 ///< of each particle
+    float rest_density_kg_per_m3 = 1000;  ///< rho0
+    float sound_speed_m_per_s = 10;  ///< c: the stiffness. Ten times the fastest water keeps rho within 1 %
+    float viscosity_m2_per_s = 0;    ///< nu, kinematic
+    float3 gravity_m_per_s2 = {0, -9.81f, 0};
+    /// Pressure is never below this. 0 for water with a surface: particles that are few, like spray, must not
+    /// pull each other together. Far below 0 for sound in a medium without a surface.
+    float lowest_pressure_Pa = 0;
+};
+
+//! [pressure]
+/// Pressure in Pa from density in kg/m^3. T: float in kernels, double in the reference.
+template <EquationOfState kState, class T>
+inline __host__ __device__ T pressure_of(const Fluid& fluid, T density) {
+    const T rho0 = fluid.rest_density_kg_per_m3, c = fluid.sound_speed_m_per_s;
+    T pressure;
+    if constexpr (kState == EquationOfState::linear) {
+        pressure = c * c * (density - rho0);
+    } else {
+        // ratio^7 - 1 factored, so that at small compression no digits are lost by subtracting 1 from
+        // nearly 1.
+        const T x = density / rho0, x2 = x * x;
+        pressure = rho0 * c * c / T(7) * (x - T(1)) * (T(1) + x * (T(1) + x) * (T(1) + x2 + x2 * x2));
+    }
+    return pressure > T(fluid.lowest_pressure_Pa) ? pressure : T(fluid.lowest_pressure_Pa);
+}
+//! [pressure]
+
+//! [density_kernel]
+/// One thread per particle, particles sorted by cell. Density by summation, then the pressure term p / rho^2
+/// that the force pass needs of every neighbour.
+template <EquationOfState kState>
+__global__ void density_kernel(float* density, float* pressure_term, const float4* position,
+                               grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid, Box box,
+                               std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    const glm::vec3 x = grid::xyz(position[i]);
+    if (!grid::is_finite(x)) {  // it sits in the limbo; the check of the state will report it
+        density[i] = pressure_term[i] = x.x - x.x;
+        return;
+    }
+    const float h = fluid.support_m, per_h_squared = 1.0f / (h * h);
+    float sum = 0;  // of h^3 W, the particle itself included
+    for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3) {
+        grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+            const std::uint32_t end = ranges.cell_last[last_cell];
+            float row = 0;
+#pragma omp simd reduction(+ : row)
+            for (std::uint32_t j = ranges.cell_first[first_cell]; j < end; ++j) {
+                const float dx = image.x - position[j].x, dy = image.y - position[j].y,
+                            dz = image.z - position[j].z;
+                row += poly6((dx * dx + dy * dy + dz * dz) * per_h_squared);
+            }
+            sum += row;
+        });
+    });
+    const float rho = fluid.mass_kg * sum / (h * h * h);
+    density[i] = rho;
+    pressure_term[i] = pressure_of<kState>(fluid, rho) / (rho * rho);
+}
+//! [density_kernel]
+
+//! [force_kernel]
+/// One thread per particle, particles sorted by cell. Acceleration by pressure, gravity and, if the water has
+/// any, viscosity. The pair terms are symmetric in i and j, so what one particle gains the other loses:
+/// momentum stays.
+template <bool kViscous>
+__global__ void force_kernel(float4* acceleration, const float4* position, const float4* velocity,
+                             const float* density, const float* pressure_term, grid::CellRanges ranges,
+                             grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    const glm::vec3 x = grid::xyz(position[i]);
+    if (!grid::is_finite(x)) return;
+    const float h = fluid.support_m, per_h = 1.0f / h, own_term = pressure_term[i];
+    glm::vec3 pressure(0), viscosity(0);
+    for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+        const glm::vec3 v = sign * grid::xyz(velocity[i]);
+        grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+            const std::uint32_t end = ranges.cell_last[last_cell];
+            float px = 0, py = 0, pz = 0, vx = 0, vy = 0, vz = 0;
+#pragma omp simd reduction(+ : px, py, pz, vx, vy, vz)
+            for (std::uint32_t j = ranges.cell_first[first_cell]; j < end; ++j) {
+                const float dx = image.x - position[j].x, dy = image.y - position[j].y,
+                            dz = image.z - position[j].z;
+                const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
+                // The particle itself, and one at the very same place, have no direction: they don't push.
+                const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
+                const float push = (own_term + pressure_term[j]) * spiky_slope(q) * per_r;
+                px += push * dx;
+                py += push * dy;
+                pz += push * dz;
+                if constexpr (kViscous) {
+                    const float drag = viscosity_laplacian(q) / density[j];
+                    vx += drag * (velocity[j].x - v.x);
+                    vy += drag * (velocity[j].y - v.y);
+                    vz += drag * (velocity[j].z - v.z);
+                }
+            }
+            pressure += sign * glm::vec3(px, py, pz);  // back through the mirror
+            viscosity += sign * glm::vec3(vx, vy, vz);
+        });
+    });
+    const float per_h4 = per_h * per_h * per_h * per_h;
+    glm::vec3 a = fluid.mass_kg * per_h4 * pressure;
+    if constexpr (kViscous)
+        a += fluid.viscosity_m2_per_s * fluid.rest_density_kg_per_m3 * fluid.mass_kg * per_h4 * per_h /
+             density[i] * viscosity;
+    const float3 g = fluid.gravity_m_per_s2;
+    acceleration[i] = make_float4(a.x + g.x, a.y + g.y, a.z + g.z, 0.0f);
+}
+//! [force_kernel]
+
+//! [kick_drift_kernel]
+/// One thread per particle: first half of the leapfrog step, v += dt/2 a, then x += dt v. The box is closed:
+/// a particle that would leave it stops at the wall and loses the velocity into it. (The walls' pressure
+/// turns nearly all particles back before that.)
+inline __global__ void kick_drift_kernel(float4* position, float4* velocity, const float4* acceleration,
+                                         float dt_s, Box box, std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    glm::vec3 v = grid::xyz(velocity[i]) + 0.5f * dt_s * grid::xyz(acceleration[i]);
+    glm::vec3 x = grid::xyz(position[i]) + dt_s * v;
+    const glm::vec3 low(box.low_m.x, box.low_m.y, box.low_m.z),
+        high(box.high_m.x, box.high_m.y, box.high_m.z);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (x[axis] < low[axis]) {
+            x[axis] = low[axis];
+            v[axis] = 0;
+        }
+        if (x[axis] > high[axis]) {
+            x[axis] = high[axis];
+            v[axis] = 0;
+        }
+    }
+    position[i] = make_float4(x.x, x.y, x.z, 0.0f);
+    velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
+}
+//! [kick_drift_kernel]
+
+//! [kick_kernel]
+/// One thread per particle: second half of the leapfrog step, v += dt/2 a, with the acceleration at the new
+/// place.
+inline __global__ void kick_kernel(float4* velocity, const float4* acceleration, float dt_s,
+                                   std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    const glm::vec3 v = grid::xyz(velocity[i]) + 0.5f * dt_s * grid::xyz(acceleration[i]);
+    velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
+}
+//! [kick_kernel]
+
+}  // namespace sph
