@@ -1,1 +1,218 @@
-int main() {}
+// Chapter 10: water by SPH, drawn as spheres.
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "10_water_sph/water_view.cuh"
+#include "common/gl_context.h"
+#include "common/gl_window.h"
+#include "common/gpu_timer.h"
+#include "common/program.h"
+
+namespace {
+
+using namespace sph;
+
+constexpr int kStills = 9;  // pictures of a run: the start, the end, and seven evenly between
+constexpr int kStepsPerCheck =
+    10;  // an explosion doubles its speed in a few steps; a check costs 1/50 of a step
+
+/// What this program can be asked for, beyond the options that all programs have.
+struct Choices {
+    std::string draw = "spheres", equation = "linear";
+    float stiffness = 1, viscosity = 1;
+    int frames = 0;
+};
+
+Settings make_settings(const course::ProgramOptions& options, const Choices& choices) {
+    const auto want = [](bool good, const std::string& sentence) {
+        if (!good) throw course::BadInput(sentence);
+    };
+    want(choices.draw == "spheres" || choices.draw == "points" || choices.draw == "none",
+         "--draw must be spheres, points or none, not '" + choices.draw + "'");
+    want(choices.equation == "linear" || choices.equation == "tait",
+         "--equation must be linear or tait, not '" + choices.equation + "'");
+    want(choices.stiffness >= 0.01f && choices.stiffness <= 1e6f, "--stiffness must be from 0.01 to 1000000");
+    want(choices.viscosity >= 0 && choices.viscosity <= 1e6f, "--viscosity must be from 0 to 1000000");
+    want(choices.frames >= 0, "--frames must be 0 or more");
+    Settings settings;
+    settings.scene = find_scene(all_scenes(), options.scene);
+    settings.choice.stiffness = choices.stiffness;
+    settings.choice.viscosity = choices.viscosity;
+    settings.state = choices.equation == "linear" ? EquationOfState::linear : EquationOfState::tait;
+    settings.particles = options.particles;
+    settings.dt_s = options.dt_s;
+    settings.seed = options.seed;
+    settings.drawing = choices.draw == "none"     ? Drawing::none
+                       : choices.draw == "points" ? Drawing::points
+                                                  : Drawing::spheres;
+    return settings;
+}
+
+std::string file_number(int number) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%06d", number);
+    return text;
+}
+
+/// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
+class Recorder {
+  public:
+    Recorder(course::Program& program, const Settings& settings, const Start& start)
+        : program_(program),
+          spacing_m_(start.spacing_m),
+          camera_(first_view(settings.scene.tank).camera()),
+          table_("The water's state",
+                 {"step", "time (s)", "front (m)", "kinetic energy (J)", "total energy (J)",
+                  "mean density (kg/m^3)", "highest (kg/m^3)", "fastest (m/s)"}) {
+        if (settings.drawing == Drawing::none) return;  // numbers alone: no OpenGL
+        context_ = course::make_headless_context();
+        view_ = std::make_unique<WaterView>(settings, start, program.options.width, program.options.height);
+        program.result().note("OpenGL " + context_->info().version + ", " + context_->info().renderer +
+                              "; handover: " + view_->handover());
+    }
+
+    void add(const Start& start, const Summary& now, int step) {
+        table_.row({step, step * double(start.dt_s), now.front_m, now.kinetic_J,
+                    now.kinetic_J + now.potential_J, now.density_sum / start.water.size(),
+                    now.highest_speed});
+        if (!view_) return;
+        view_->draw(start.water, camera_);
+        stills_.push_back(view_->image());
+        const std::string file = "still_" + file_number(step) + ".png";
+        course::save_png(program_.options.out / file, stills_.back());
+        captions_.push_back(
+            {file, course::format_number(step * double(start.dt_s)) + " s, step " + std::to_string(step)});
+    }
+
+    /// Everything gathered so far goes into the result; also when the run ends by an error.
+    void finish() {
+        if (!stills_.empty()) {
+            for (course::Image& still : stills_) still = course::half_size(still);
+            course::save_png(program_.options.out / "time_lapse.png", course::contact_sheet(stills_, 3));
+            program_.result().picture("time_lapse.png", "Time lapse, row by row");
+        }
+        for (const auto& [file, caption] : captions_) program_.result().picture(file, caption);
+        program_.result().table(table_);
+    }
+
+  private:
+    course::Program& program_;
+    float spacing_m_;
+    course::Camera camera_;
+    course::Table table_;
+    std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
+    std::unique_ptr<WaterView> view_;
+    std::vector<course::Image> stills_;
+    std::vector<std::pair<std::string, std::string>> captions_;
+};
+
+void run_headless(course::Program& program, const Settings& settings, Start& start) {
+    const int steps = program.options.steps;
+    Recorder recorder(program, settings, start);
+    Summarizer summarize(start.water.size());
+    course::Progress progress(settings.scene.name, steps);
+    double seconds = 0;  // of the steps alone
+    int stills = 0;
+    try {
+        for (int step = 0; step <= steps; ++step) {
+            const bool still = step >= double(stills) * steps / (kStills - 1);
+            if (still || step % kStepsPerCheck == 0) {
+                const Summary now = summarize(start.water);
+                check_state(start.water, now, step, start.dt_s);
+                if (still) recorder.add(start, now, step);
+                while (still && step >= double(stills) * steps / (kStills - 1) && stills < kStills) ++stills;
+            }
+            if (step == steps) break;
+            const auto before = std::chrono::steady_clock::now();
+            start.water.step(start.dt_s);
+            CUDA_CHECK(cudaDeviceSynchronize());
+            seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+            progress.update(step + 1);
+        }
+    } catch (const course::Unstable&) {
+        recorder.finish();
+        throw;
+    }
+    recorder.finish();
+    course::Table cost("Cost",
+                       {"particles", "steps", "dt (s)", "ms per step", "million particle-steps per s"});
+    if (steps > 0)
+        cost.row({start.water.size(), steps, start.dt_s, 1e3 * seconds / steps,
+                  1e-6 * steps * double(start.water.size()) / seconds});
+    program.result().table(cost);
+    char hash[64];
+    std::snprintf(hash, sizeof hash, "State hash: %016llx",
+                  static_cast<unsigned long long>(state_hash(start.water)));
+    program.result().note(hash);
+}
+
+void run_window(course::Program& program, const Choices& choices, const Settings& settings, Start& start) {
+    const course::ProgramOptions& options = program.options;
+    const auto window =
+        course::make_window(options.width, options.height, "Water by SPH: " + settings.scene.name);
+    WaterView view(settings, start, options.width, options.height);
+    std::printf("%s; handover: %s\n", window->info().renderer.c_str(), view.handover().c_str());
+    std::printf(
+        "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
+        "P: picture, Esc: end\n");
+    Summarizer summarize(start.water.size());
+    course::OrbitCamera orbit = first_view(settings.scene.tank);
+    bool paused = false;
+    int step = 0;
+    for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
+        const course::WindowEvents events = window->poll();
+        if (events.pause) paused = !paused;
+        if (events.step) paused = true;
+        if (events.reset) {
+            start = make_start(settings);
+            step = 0;
+        }
+        course::steer(orbit, events, options.height);
+        if (!paused || events.step) {
+            start.water.step(start.dt_s);
+            if (++step % kStepsPerCheck == 0)
+                check_state(start.water, summarize(start.water), step, start.dt_s);
+        }
+        view.draw(start.water, orbit.camera());
+        if (events.screenshot) {
+            const std::string file = "screenshot_" + file_number(step) + ".png";
+            course::save_png(options.out / file, view.image());
+            std::printf("%s\n", (options.out / file).string().c_str());
+        }
+        window->show(view.picture());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    course::Program program(
+        "10_water_sph", "Water by SPH",
+        "Density, pressure and viscosity summed over neighbours make a block of particles break, "
+        "run, splash and settle like water.");
+    program.options.particles = 16384;
+    program.options.steps = 2000;
+    for (const Scene& scene : all_scenes()) program.scenes.push_back(scene.name);
+    Choices choices;
+    program.option("--draw", choices.draw, "spheres, points, or none (numbers alone, no OpenGL)");
+    program.option("--equation", choices.equation, "of state: linear or tait");
+    program.option("--stiffness", choices.stiffness, "factor on the scene's sound speed");
+    program.option("--viscosity", choices.viscosity,
+                   "factor on the scene's viscosity; 0: none, not even computed");
+    program.option("--frames", choices.frames,
+                   "close the window after so many frames (0: when the user does)");
+    return program.run(argc, argv, [&] {
+        const Settings settings = make_settings(program.options, choices);
+        Start start = make_start(settings);
+        if (program.options.explain) {
+            std::printf("%s", explain(settings, start).c_str());
+            return;
+        }
+        program.result().device = course::device_name();
+        if (program.options.window)
+            run_window(program, choices, settings, start);
+        else
+            run_headless(program, settings, start);
+    });
+}

@@ -24,7 +24,7 @@ struct Scene {
 inline std::vector<Scene> all_scenes() {
     return {
         // A cube of water along the left wall, held by a gate that is gone at t = 0.
-        {"dam_break", {{0, 0, 0}, {0.9f, 0.7f, 0.4f}}, {0, 0, 0}, {0.4f, 0.4f, 0.4f}},
+        {"dam_break", {{0, 0, 0}, {0.9f, 0.8f, 0.4f}}, {0, 0, 0}, {0.4f, 0.4f, 0.4f}},
         // The same cube hanging in the middle of a square tank.
         {"drop", {{0, 0, 0}, {0.8f, 0.8f, 0.8f}}, {0.2f, 0.25f, 0.2f}, {0.4f, 0.4f, 0.4f}},
     };
@@ -39,8 +39,7 @@ inline const Scene& find_scene(const std::vector<Scene>& scenes, const std::stri
 
 //! [fill_block]
 /// Exactly `particles` points on a cubic lattice, layer by layer from the floor of the block. Each is moved
-/// by up to a hundredth of the spacing: a perfect lattice would collapse in perfect rows, which no water
-/// does.
+/// by up to a twentieth of the spacing: a perfect lattice would collapse in perfect rows, which no water does.
 /// @param spacing_m  out: the lattice's spacing, from which mass and support radius follow
 inline std::vector<float4> fill_block(const Scene& scene, std::uint32_t particles, std::uint64_t seed,
                                       float& spacing_m) {
@@ -59,7 +58,7 @@ inline std::vector<float4> fill_block(const Scene& scene, std::uint32_t particle
         const auto random =
             r123::Philox4x32()({{i, 0, 0, 0}}, {{std::uint32_t(seed), std::uint32_t(seed >> 32)}});
         const auto place = [&](float low, std::uint32_t index, std::uint32_t bits) {
-            const float jitter = 0.01f * (bits * 0x1p-31f - 1.0f);
+            const float jitter = 0.05f * (bits * 0x1p-31f - 1.0f);
             return low + (index + 0.5f + jitter) * spacing_m;
         };
         position.push_back(make_float4(place(scene.block_low_m.x, i % nx, random[0]),

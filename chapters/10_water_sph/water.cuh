@@ -89,6 +89,8 @@ class Water {
     const course::DeviceBuffer<std::uint32_t>& ids() const { return id_; }
     const Fluid& fluid() const { return fluid_; }
     const Box& box() const { return box_; }
+    std::uint32_t cell_count() const { return cells_.cell_count(); }
+    std::size_t cell_bytes() const { return sort_.cell_bytes(); }
 
     /// Bytes of device memory per particle, the grid's cells not counted.
     static constexpr std::size_t kBytesPerParticle = 2 * 2 * sizeof(float4) + sizeof(float4) +

@@ -1,0 +1,115 @@
+/// @file
+/// One run of this chapter's program without its pictures: settings, start, steps, what they cost, what they
+/// leave out.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "10_water_sph/diagnostics.cuh"
+#include "10_water_sph/scene.cuh"
+
+namespace sph {
+
+enum class Drawing { none, points, spheres };
+
+/// Everything that a run depends on.
+struct Settings {
+    Scene scene;
+    FluidChoice choice;
+    EquationOfState state = EquationOfState::linear;
+    std::uint32_t particles = 16384;
+    float dt_s = 0;  ///< 0: the largest that time_step_limit allows
+    std::uint64_t seed = 1;
+    Drawing drawing = Drawing::spheres;
+};
+
+/// The water at its start, and the step it is to be moved by.
+struct Start {
+    Water water;
+    float spacing_m, dt_s;
+};
+
+inline Start make_start(const Settings& settings) {
+    float spacing_m = 0;
+    const std::vector<float4> position =
+        fill_block(settings.scene, settings.particles, settings.seed, spacing_m);
+    const Fluid fluid = make_fluid(settings.scene, spacing_m, settings.choice);
+    const float dt_s = settings.dt_s > 0 ? settings.dt_s : time_step_limit(fluid).smallest_s();
+    return {Water(fluid, settings.scene.tank, settings.state, position,
+                  std::vector<float4>(settings.particles, make_float4(0, 0, 0, 0))),
+            spacing_m, dt_s};
+}
+
+//! [launches]
+/// Kernels of one step in their order, with how often each is launched. Tests hold it against what really
+/// happens.
+inline std::vector<std::pair<std::string, int>> launches_per_step(const Settings& settings,
+                                                                  const Water& water) {
+    const int levels = grid::ExclusiveScan::levels(water.cell_count() + 2);  // with the limbo and the end
+    return {{"kick_drift_kernel", 1},
+            {"count_kernel", 1},
+            {"chunk_sums_kernel", levels},
+            {"scan_chunks_kernel", levels},
+            {"scatter_kernel", 1},
+            {"sort_cells_kernel", 1},
+            {"grid::gather_kernel", 3},
+            {settings.state == EquationOfState::linear ? "density_kernel<EquationOfState::linear>"
+                                                       : "density_kernel<EquationOfState::tait>",
+             1},
+            {settings.choice.viscosity > 0 ? "force_kernel<true>" : "force_kernel<false>", 1},
+            {"kick_kernel", 1}};
+}
+//! [launches]
+
+/// The answer to --explain.
+inline std::string explain(const Settings& settings, const Start& start) {
+    int total = 0;
+    std::string passes;
+    for (const auto& [name, count] : launches_per_step(settings, start.water)) {
+        passes += (passes.empty() ? "" : ", ") + name + (count > 1 ? " x " + std::to_string(count) : "");
+        total += count;
+    }
+    std::string text = "each step: " + std::to_string(total) + " kernels: " + passes + "\n";
+    text += "each particle: " + std::to_string(Water::kBytesPerParticle) +
+            " bytes of device memory; cells: " + std::to_string(start.water.cell_bytes()) + " bytes in all\n";
+    if (settings.drawing != Drawing::none)
+        text += "each particle drawn: " + std::to_string(2 * sizeof(float4)) +
+                " bytes in 2 OpenGL buffers, copied on the device for each picture\n";
+    if (settings.choice.viscosity == 0)
+        text += "left out: the viscosity term (compiled out of force_kernel)\n";
+    text += settings.state == EquationOfState::linear ? "left out: Tait's equation of state\n"
+                                                      : "left out: the linear equation of state\n";
+    text +=
+        "left out: a pass for the bounds of the particles (the tank does not move, so neither does the "
+        "grid)\n";
+    text += "left out: colour array (colour follows from speed, in the shader)\n";
+    if (settings.drawing == Drawing::none)
+        text += "left out: OpenGL, its context and all its objects, since nothing is drawn\n";
+    if (settings.drawing == Drawing::points) text += "left out: surface buffer, shadow map, lighting\n";
+    return text;
+}
+
+//! [state_hash]
+/// 64-bit FNV-1a hash of all positions and velocities, by particle number. Equal states have equal hashes;
+/// one different bit anywhere gives another.
+inline std::uint64_t state_hash(const Water& water) {
+    const std::vector<float4> x = water.positions().download(), v = water.velocities().download();
+    const std::vector<std::uint32_t> id = water.ids().download();
+    std::vector<std::uint32_t> place(id.size());
+    for (std::uint32_t k = 0; k < id.size(); ++k) place[id[k]] = k;
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    const auto add = [&hash](float4 value) {
+        unsigned char bytes[sizeof value];
+        __builtin_memcpy(bytes, &value, sizeof value);
+        for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+    };
+    for (std::uint32_t k : place) {
+        add(x[k]);
+        add(v[k]);
+    }
+    return hash;
+}
+//! [state_hash]
+
+}  // namespace sph
