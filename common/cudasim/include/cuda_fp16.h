@@ -1,0 +1,1 @@
+#error "the CUDA simulator has no half precision: use float"

@@ -1,0 +1,13 @@
+/// @file
+/// Tells the recordings that are alive what happens.
+#pragma once
+#include <cstddef>
+
+#include "cudasim.h"
+
+namespace cudasim {
+
+void note_launch(const LaunchRequest& request);
+void note_allocation(std::size_t bytes);
+
+}  // namespace cudasim

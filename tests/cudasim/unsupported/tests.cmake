@@ -1,0 +1,22 @@
+# What the simulator does not have is a compile error that says so. Each test runs the compiler on one use.
+get_filename_component(cudasim_include ${CMAKE_SOURCE_DIR}/common/cudasim/include ABSOLUTE)
+set(copy ${COURSE_MIRROR}/tests/cudasim/unsupported/uses.cu.cpp)  # rewritten as part of the tree
+
+function(add_unsupported use message)
+    add_test(NAME "cudasim unsupported: ${use}" COMMAND ${CMAKE_CXX_COMPILER} -std=c++17 -fsyntax-only
+        -I${cudasim_include} -D${use} ${copy})
+    set_tests_properties("cudasim unsupported: ${use}" PROPERTIES LABELS cudasim PASS_REGULAR_EXPRESSION "${message}")
+endfunction()
+
+add_unsupported(COOPERATIVE_GROUPS "error: .*has no cooperative groups: use __syncthreads")
+add_unsupported(MANAGED_VARIABLE "error: .*has no managed memory: use cudaMalloc and cudaMemcpy")
+add_unsupported(MANAGED_MEMORY "error: .*has no cudaMallocManaged: use cudaMalloc and cudaMemcpy")
+add_unsupported(ACTIVE_MASK "error: .*has no __activemask: .*__ballot_sync")
+add_unsupported(GRAPHS "uses.cu:[0-9]+:[0-9]+: error: .*cudaGraph_t")
+# Errors of the learner's own name the learner's file and line.
+add_unsupported(WRONG_ARGUMENT "uses.cu:[0-9]+:[0-9]+: error: cannot convert .double. to .int\\*")
+add_unsupported(TOO_FEW_ARGUMENTS "uses.cu:[0-9]+:[0-9]+: error: no match for call")
+
+add_test(NAME "cudasim unsupported: nothing" COMMAND ${CMAKE_CXX_COMPILER} -std=c++17 -fsyntax-only
+    -I${cudasim_include} ${copy})
+set_tests_properties("cudasim unsupported: nothing" PROPERTIES LABELS cudasim)
