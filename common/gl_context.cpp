@@ -119,3 +119,19 @@ std::unique_ptr<GlContext> make_headless_context() {
 }
 
 }  // namespace course
+
+// Sanitizer builds ask these functions how to go about their work.
+extern "C" {
+const char* __asan_default_options();
+const char* __tsan_default_suppressions();
+
+// Mesa keeps memory until the process ends, and the leak check hangs over naming it (gcc 12): programs with
+// OpenGL go without. The simulator reports leaked device memory itself.
+const char* __asan_default_options() {
+    return "detect_leaks=0";
+}
+// Mesa's software renderer destroys mutexes that its threads have just left.
+const char* __tsan_default_suppressions() {
+    return "race:swrast_dri.so";
+}
+}
