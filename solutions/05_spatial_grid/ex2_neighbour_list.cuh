@@ -1,0 +1,69 @@
+// Exercise 05.2: neighbours as a list.
+//
+// A model that walks over its neighbours twice a step (SPH does) can look for them once and keep them. Lists
+// of different lengths go into one array without gaps by what you know from the sort: count, scan, fill.
+#pragma once
+#include "05_spatial_grid/neighbours.cuh"
+#include "common/todo.h"
+
+namespace grid {
+
+// The neighbours of the particle at place p of the sorted order stand in `neighbour` from number first[p] to
+// first[p + 1] - 1: as places, ascending, without p itself.
+struct NeighbourList {
+    course::DeviceBuffer<std::uint32_t> first;  // n + 1 numbers; the last is the number of all entries
+    course::DeviceBuffer<std::uint32_t> neighbour;
+};
+
+// One thread per place: writes one particle's list.
+inline __global__ void fill_list_kernel(std::uint32_t* neighbour, const std::uint32_t* first,
+                                        const float4* sorted_position, CellRanges ranges, CellGrid grid,
+                                        float radius_m, std::uint32_t n) {
+    const std::uint32_t place = blockIdx.x * blockDim.x + threadIdx.x;
+    if (place >= n) return;
+    // TODO(5.2): walk over the rows as neighbours_coherent_kernel does, and write instead of counting. A
+    // particle at NaN has no neighbours and stays out of the cells. About 8 lines.
+    // <solution>
+    const glm::vec3 x = xyz(sorted_position[place]);
+    if (!is_finite(x)) return;
+    std::uint32_t next = first[place];
+    for_each_row(grid, x, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+        for (std::uint32_t k = ranges.cell_first[first_cell]; k < ranges.cell_last[last_cell]; ++k)
+            if (k != place && is_near(x, xyz(sorted_position[k]), radius_m * radius_m)) neighbour[next++] = k;
+    });
+    // <stub>
+    //| const auto todo = std::uint32_t(course::kTodo);
+    //| for (std::uint32_t k = first[place]; k < first[place + 1]; ++k) neighbour[k] = todo;
+    // </solution>
+}
+
+// Lists of all n particles, n > 0, for positions sorted by CountingSort.
+inline NeighbourList list_neighbours(const float4* sorted_position, CellRanges ranges, const CellGrid& grid,
+                                     float radius_m, std::uint32_t n) {
+    const std::uint32_t threads = 128, blocks = blocks_for(n, threads);
+    NeighbourList list;
+    // TODO(5.2): make list.first from the counts, then list.neighbour as long as it has to be, then fill it.
+    // neighbours_coherent_kernel counts, an ExclusiveScan sums up. One number comes to the host: how many
+    // entries there are. About 12 lines.
+    // <solution>
+    list.first = course::DeviceBuffer<std::uint32_t>(std::vector<std::uint32_t>(n + 1, 0));
+    neighbours_coherent_kernel<<<blocks, threads>>>(list.first.data(), sorted_position, ranges, grid,
+                                                    radius_m, n);
+    CUDA_CHECK(cudaGetLastError());
+    ExclusiveScan scan(n + 1);
+    scan(list.first.data(), n + 1);
+    std::uint32_t entries = 0;
+    CUDA_CHECK(cudaMemcpy(&entries, list.first.data() + n, sizeof entries, cudaMemcpyDeviceToHost));
+    list.neighbour = course::DeviceBuffer<std::uint32_t>(entries);
+    fill_list_kernel<<<blocks, threads>>>(list.neighbour.data(), list.first.data(), sorted_position, ranges,
+                                          grid, radius_m, n);
+    CUDA_CHECK(cudaGetLastError());
+    // <stub>
+    //| (void)blocks, (void)sorted_position, (void)ranges, (void)grid, (void)radius_m;
+    //| const std::vector<std::uint32_t> todo(n + 1, std::uint32_t(course::kTodo));
+    //| list.first = course::DeviceBuffer<std::uint32_t>(todo);
+    // </solution>
+    return list;
+}
+
+}  // namespace grid
