@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+/// Chapter 05: cells, and who is near whom.
 namespace grid {
 
 /// Where the cells are. Cells are numbered x fastest, then y, then z, from 0 to cell_count() - 1.

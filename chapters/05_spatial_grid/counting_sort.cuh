@@ -120,6 +120,9 @@ class CountingSort {
     /// order()[place] is the particle at that place of the sorted order.
     const std::uint32_t* order() const { return order_.data(); }
 
+    /// Device memory for the cells, whatever the number of particles.
+    std::size_t cell_bytes() const { return cell_first_.bytes() + next_place_.bytes() + scan_.bytes(); }
+
     static constexpr std::uint32_t kThreads = 128;
 
   private:

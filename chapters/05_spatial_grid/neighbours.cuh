@@ -64,6 +64,8 @@ inline __global__ void neighbours_scattered_kernel(std::uint32_t* count, const f
 //! [coherent]
 /// Only the difference: positions were gathered into cell order, so a row of three cells is one stretch of
 /// memory, read from end to end. Counts come out in cell order too.
+/// The loop counts from 0 along a pointer: an index that began elsewhere could wrap around at 2^32 for all a
+/// compiler knows, and would keep it from loading the stretch as vectors.
 /// @pre ranges come from CountingSort: empty cells keep the stretch unbroken.
 inline __global__ void neighbours_coherent_kernel(std::uint32_t* sorted_count, const float4* sorted_position,
                                                   CellRanges ranges, CellGrid grid, float radius_m,
@@ -75,12 +77,13 @@ inline __global__ void neighbours_coherent_kernel(std::uint32_t* sorted_count, c
     std::uint32_t near = 0;
     if (is_finite(x)) {
         for_each_row(grid, x, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
-            const std::uint32_t end = ranges.cell_last[last_cell];
-            std::uint32_t in_row = 0;
-#pragma omp simd reduction(+ : in_row)
-            for (std::uint32_t k = ranges.cell_first[first_cell]; k < end; ++k)
-                in_row += is_near(x, xyz(sorted_position[k]), radius_squared);
-            near += in_row;
+            const float4* row = sorted_position + ranges.cell_first[first_cell];
+            const std::uint32_t candidates = ranges.cell_last[last_cell] - ranges.cell_first[first_cell];
+            std::uint32_t near_in_row = 0;
+#pragma omp simd reduction(+ : near_in_row)
+            for (std::uint32_t k = 0; k < candidates; ++k)
+                near_in_row += is_near(x, xyz(row[k]), radius_squared);
+            near += near_in_row;
         });
         --near;
     }

@@ -54,8 +54,8 @@ inline __global__ void scan_chunks_kernel(std::uint32_t* values, const std::uint
 //! [scan_kernels]
 
 //! [exclusive_scan]
-/// Scan of up to 2^31 elements: the sums of the chunks are scanned by the same function, 64 times shorter each time,
-/// until one chunk is left. The scratch memory is made once, for a largest length.
+/// Scan of up to 2^31 elements: the sums of the chunks are scanned by the same function, 64 times shorter
+/// each time, until one chunk is left. The scratch memory is made once, for a largest length.
 class ExclusiveScan {
   public:
     explicit ExclusiveScan(std::uint32_t max_length) {
@@ -64,6 +64,14 @@ class ExclusiveScan {
             levels_.emplace_back(chunks(length));
     }
     void operator()(std::uint32_t* values, std::uint32_t n) { scan(values, n, 0); }
+
+    std::size_t bytes() const {
+        std::size_t sum = 0;
+        for (const auto& level : levels_) sum += level.bytes();
+        return sum;
+    }
+    /// How often a scan of n elements launches each of the two kernels.
+    static int levels(std::uint32_t n) { return n > 1 ? 1 + levels(chunks(n)) : 0; }
 
   private:
     static std::uint32_t chunks(std::uint32_t n) { return n / kScanChunk + (n % kScanChunk != 0); }

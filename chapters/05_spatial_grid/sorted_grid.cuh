@@ -1,5 +1,5 @@
 /// @file
-/// The grid by a general sort of (cell, particle) pairs: less to write than the counting sort, and slower.
+/// The grid by a general sort of (cell, particle) pairs: less to write than the counting sort.
 #pragma once
 #include <cuda_runtime.h>
 #include <thrust/execution_policy.h>

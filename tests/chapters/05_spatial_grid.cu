@@ -3,13 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <random>
 
 #include "05_spatial_grid/bounds.cuh"
+#include "05_spatial_grid/costs.h"
+#include "05_spatial_grid/measure.cuh"
 #include "05_spatial_grid/neighbours.cuh"
 #include "05_spatial_grid/sorted_grid.cuh"
 #include "tests/support/course_test.h"
+#include "tests/support/run_program.h"
+#ifdef __CUDASIM__
+#include "common/cudasim/cudasim.h"
+#endif
 
 namespace {
 
@@ -67,8 +74,8 @@ Counts count_all(const std::vector<float4>& position, const CellGrid& cells, flo
 
     grid::SortedGrid by_sort(n, cells.cell_count());
     by_sort.build(x.data(), cells, n);
-    grid::neighbours_scattered_kernel<<<blocks, threads>>>(count.data(), x.data(), by_sort.order(), by_sort.ranges(),
-                                                           cells, radius, n);
+    grid::neighbours_scattered_kernel<<<blocks, threads>>>(count.data(), x.data(), by_sort.order(),
+                                                           by_sort.ranges(), cells, radius, n);
     CUDA_CHECK(cudaGetLastError());
     counts.sorted_grid = count.download();
 
@@ -80,15 +87,16 @@ Counts count_all(const std::vector<float4>& position, const CellGrid& cells, flo
     counts.counting_sort = count.download();
 
     grid::gather_kernel<<<blocks, threads>>>(sorted_x.data(), x.data(), by_count.order(), n);
-    grid::neighbours_coherent_kernel<<<blocks, threads>>>(count.data(), sorted_x.data(), by_count.ranges(), cells,
-                                                          radius, n);
+    grid::neighbours_coherent_kernel<<<blocks, threads>>>(count.data(), sorted_x.data(), by_count.ranges(),
+                                                          cells, radius, n);
     CUDA_CHECK(cudaGetLastError());
     const std::vector<std::uint32_t> in_cell_order = count.download();
     course::DeviceBuffer<std::uint32_t> order(n);
     CUDA_CHECK(cudaMemcpy(order.data(), by_count.order(), order.bytes(), cudaMemcpyDeviceToDevice));
     const std::vector<std::uint32_t> particle_at = order.download();
     counts.coherent.resize(n);
-    for (std::uint32_t place = 0; place < n; ++place) counts.coherent[particle_at[place]] = in_cell_order[place];
+    for (std::uint32_t place = 0; place < n; ++place)
+        counts.coherent[particle_at[place]] = in_cell_order[place];
     return counts;
 }
 
@@ -109,9 +117,11 @@ std::uint64_t splitmix64(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// Exclusive or of a hash of each pair i < j: the same for the same set of pairs, in whatever order it is found.
-__global__ void pair_hash_kernel(unsigned long long* hash, const float4* sorted_position, const std::uint32_t* order,
-                                 grid::CellRanges ranges, CellGrid cells, float radius, std::uint32_t n) {
+/// Exclusive or of a hash of each pair i < j: the same for the same set of pairs, in whatever order it is
+/// found.
+__global__ void pair_hash_kernel(unsigned long long* hash, const float4* sorted_position,
+                                 const std::uint32_t* order, grid::CellRanges ranges, CellGrid cells,
+                                 float radius, std::uint32_t n) {
     const std::uint32_t place = blockIdx.x * blockDim.x + threadIdx.x;
     if (place >= n) return;
     const glm::vec3 x = grid::xyz(sorted_position[place]);
@@ -131,7 +141,8 @@ __global__ void pair_hash_kernel(unsigned long long* hash, const float4* sorted_
 }  // namespace
 
 TEST_CASE("pair counts and hashes of the Philox clouds") {
-    // Reference values: exact integer arithmetic over all pairs (tests/data/README.md, philox_cloud_pair_counts).
+    // Reference values: exact integer arithmetic over all pairs (tests/data/README.md,
+    // philox_cloud_pair_counts).
     struct Reference {
         std::uint32_t n, seed;
         float cutoff;
@@ -144,7 +155,8 @@ TEST_CASE("pair counts and hashes of the Philox clouds") {
         const std::vector<float4> cloud = philox_cloud(ref.n, ref.seed);
         const CellGrid cells = grid_around(cloud, ref.cutoff);
         const Counts counts = count_all(cloud, cells, ref.cutoff);
-        for (const auto& count : {counts.brute_force, counts.sorted_grid, counts.counting_sort, counts.coherent}) {
+        for (const auto& count :
+             {counts.brute_force, counts.sorted_grid, counts.counting_sort, counts.coherent}) {
             std::uint64_t twice = 0;
             for (std::uint32_t c : count) twice += c;
             CHECK(twice == 2 * ref.pairs);
@@ -185,7 +197,8 @@ TEST_CASE("4096 coincident particles: all pairs, and no time lost in sorting one
     const std::vector<float4> cloud(4096, make_float4(0.25f, -3.0f, 7.0f, 0));
     const CellGrid cells = grid_around(cloud, 0.1f);
     const Counts counts = count_all(cloud, cells, 0.1f);
-    for (const auto& count : {counts.brute_force, counts.sorted_grid, counts.counting_sort, counts.coherent}) {
+    for (const auto& count :
+         {counts.brute_force, counts.sorted_grid, counts.counting_sort, counts.coherent}) {
         std::uint64_t pairs = 0;
         for (std::uint32_t c : count) pairs += c;
         CHECK(pairs / 2 == 8386560);  // n (n - 1) / 2
@@ -203,7 +216,8 @@ TEST_CASE("particles on cell faces are in exactly one cell") {
     for (int z = 0; z < 9; ++z)
         for (int y = 0; y < 9; ++y)
             for (int x = 0; x < 9; ++x) cloud.push_back(make_float4(0.125f * x, 0.125f * y, 0.125f * z, 0));
-    const CellGrid cells{glm::vec3(0), 8.0f, glm::ivec3(9)};  // edge 1/8: every coordinate is k * edge exactly
+    const CellGrid cells{glm::vec3(0), 8.0f,
+                         glm::ivec3(9)};  // edge 1/8: every coordinate is k * edge exactly
     check_against_reference(cloud, cells, 0.125f);
     check_against_reference(cloud, cells, 0.1250001f);
     grid::CountingSort sort(cloud.size(), cells.cell_count());
@@ -219,8 +233,10 @@ TEST_CASE("negative coordinates: moving the cloud changes nothing") {
     std::vector<float4> moved = cloud;
     for (float4& p : moved) p = make_float4(p.x - 1, p.y - 1, p.z - 1, 0);  // exact: multiples of 2^-20
     const auto here = count_all(cloud, grid_around(cloud, 0.125f), 0.125f).coherent;
-    // A grid whose cell 0 starts at 0.0 in the middle of the moved cloud would clamp; this one starts below it.
-    const auto there = count_all(moved, grid::make_grid({-1.05f, -1.1f, -1.2f}, {0, 0, 0}, 0.125f, 10000), 0.125f);
+    // A grid whose cell 0 starts at 0.0 in the middle of the moved cloud would clamp; this one starts below
+    // it.
+    const auto there =
+        count_all(moved, grid::make_grid({-1.05f, -1.1f, -1.2f}, {0, 0, 0}, 0.125f, 10000), 0.125f);
     course::check_equal(there.coherent, here, "neighbours after the move");
     course::check_equal(there.brute_force, here, "neighbours after the move, brute force");
     CHECK(grid::cell_of({glm::vec3(-2), 1.0f, {4, 4, 4}}, {-1.3f, -0.3f, 0.3f}) == glm::ivec3(0, 1, 2));
@@ -262,7 +278,8 @@ TEST_CASE("NaN and infinite positions go to the limbo and change no other partic
     grid::CountingSort sort(broken.size(), cells.cell_count());
     sort.build(x.data(), cells, broken.size());
     std::uint32_t limbo[2];
-    CUDA_CHECK(cudaMemcpy(limbo, sort.ranges().cell_first + cells.cell_count(), sizeof limbo, cudaMemcpyDeviceToHost));
+    CUDA_CHECK(cudaMemcpy(limbo, sort.ranges().cell_first + cells.cell_count(), sizeof limbo,
+                          cudaMemcpyDeviceToHost));
     CHECK(limbo[1] - limbo[0] == 2);  // reported: the program can say how many were lost
 }
 
@@ -305,8 +322,10 @@ TEST_CASE("the fp32 trap: with cell edge = radius two neighbours land two cells 
         CHECK(naive(trap.x2) - naive(trap.x1) == 2);
         // Our edge: the pair is found, wherever the grid begins.
         for (float low : {0.0f, -1.0f, -7.3f}) {
-            const CellGrid cells = grid::make_grid(glm::vec3(low), glm::vec3(50, 0.01f, 0.01f), trap.radius, 1 << 20);
-            check_against_reference({make_float4(trap.x1, 0, 0, 0), make_float4(trap.x2, 0, 0, 0)}, cells, trap.radius);
+            const CellGrid cells =
+                grid::make_grid(glm::vec3(low), glm::vec3(50, 0.01f, 0.01f), trap.radius, 1 << 20);
+            check_against_reference({make_float4(trap.x1, 0, 0, 0), make_float4(trap.x2, 0, 0, 0)}, cells,
+                                    trap.radius);
         }
     }
 }
@@ -324,7 +343,8 @@ TEST_CASE("the fp32 trap does not exist for our edge: half a million close pairs
                 const float a = unit(random) * (length - 1) * radius;
                 float b = a + radius;
                 while (!(b - a < radius)) b = std::nextafter(b, 0.0f);
-                worst = std::max(worst, grid::cell_of(cells, {b, 0, 0}).x - grid::cell_of(cells, {a, 0, 0}).x);
+                worst =
+                    std::max(worst, grid::cell_of(cells, {b, 0, 0}).x - grid::cell_of(cells, {a, 0, 0}).x);
             }
             CHECK(worst == 1);
         }
@@ -373,4 +393,102 @@ TEST_CASE("the sorted order repeats exactly, however the threads are timed") {
     std::vector<std::uint32_t> order(cloud.size());
     CUDA_CHECK(cudaMemcpy(order.data(), stable.order(), order.size() * 4, cudaMemcpyDeviceToHost));
     CHECK(order == first);
+}
+
+TEST_CASE("what --explain says is what happens: launches and bytes of each method") {
+    course::require_simulator();
+#ifdef __CUDASIM__
+    const std::uint32_t n = 3000, threads = 128, blocks = grid::blocks_for(n, threads);
+    const auto cloud = random_cloud(n, glm::vec3(0), glm::vec3(1), 2);
+    const float radius = 0.05f;
+    const CellGrid cells = grid_around(cloud, radius);
+    const std::vector<grid::Cost> costs = grid::costs(n, cells.cell_count());
+    std::vector<std::string> kernels;
+    // Everything a method allocates, from the positions on, is allocated while its recording lives.
+    const auto check_cost = [&](const grid::Cost& cost, const auto& run) {
+        INFO(cost.method);
+        const cudasim::Recording log;
+        run();
+        std::vector<std::string> launched, promised = cost.build;
+        for (const cudasim::Launch& launch : log.launches()) launched.push_back(launch.kernel);
+        promised.insert(promised.end(), cost.query.begin(), cost.query.end());
+        promised.erase(std::remove(promised.begin(), promised.end(), grid::kThrustSort), promised.end());
+        CHECK(launched == promised);
+        CHECK(log.bytes() == cost.bytes);
+    };
+    using namespace grid;  // the log has the kernels' names as they are written at the launch
+    check_cost(costs[0], [&] {
+        course::DeviceBuffer<float4> x(cloud);
+        course::DeviceBuffer<std::uint32_t> count(n);
+        neighbours_brute_force_kernel<<<blocks, threads>>>(count.data(), x.data(), radius, n);
+    });
+    check_cost(costs[1], [&] {
+        course::DeviceBuffer<float4> x(cloud);
+        course::DeviceBuffer<std::uint32_t> count(n);
+        SortedGrid sort(n, cells.cell_count());
+        sort.build(x.data(), cells, n);
+        neighbours_scattered_kernel<<<blocks, threads>>>(count.data(), x.data(), sort.order(), sort.ranges(),
+                                                         cells, radius, n);
+    });
+    for (const bool reorder : {false, true})
+        check_cost(costs[2 + reorder], [&] {
+            course::DeviceBuffer<float4> x(cloud);
+            course::DeviceBuffer<std::uint32_t> count(n);
+            CountingSort sort(n, cells.cell_count());
+            sort.build(x.data(), cells, n);
+            if (!reorder) {
+                neighbours_scattered_kernel<<<blocks, threads>>>(count.data(), x.data(), sort.order(),
+                                                                 sort.ranges(), cells, radius, n);
+                return;
+            }
+            course::DeviceBuffer<float4> sorted_x(n);
+            gather_kernel<<<blocks, threads>>>(sorted_x.data(), x.data(), sort.order(), n);
+            neighbours_coherent_kernel<<<blocks, threads>>>(count.data(), sorted_x.data(), sort.ranges(),
+                                                            cells, radius, n);
+        });
+#endif
+}
+
+TEST_CASE("a method that misses a neighbour stops the program") {
+    CHECK_NOTHROW(grid::check_same({1, 2, 3}, {1, 2, 4}, 2, "brute force"));  // the third was not asked
+    try {
+        grid::check_same({1, 2, 3}, {1, 2, 4}, 3, "brute force");
+        FAIL("not noticed");
+    } catch (const std::runtime_error& error) {
+        CHECK(std::string(error.what()) ==
+              "brute force finds 3 neighbours of particle 2, the counting sort 4");
+    }
+}
+
+TEST_CASE("the program: bad input ends with exit code 2 and a sentence; extremes work") {
+    const std::filesystem::path out = std::filesystem::temp_directory_path() / "course_test_05";
+    const auto run = [&](const std::string& arguments) {
+        return course::run_program("ch05_spatial_grid", arguments + " --out " + out.string());
+    };
+    const struct {
+        const char *arguments, *sentence;
+    } bad[] = {{"--max-exponent 11", "--max-exponent must be from 12 to 24, not 11"},
+               {"--max-exponent 25", "--max-exponent must be from 12 to 24, not 25"},
+               {"--particles 0", "--particles must be"},
+               {"--particles 16777217", "--particles must be from 1 to 16777216"},
+               {"--window", "--window: this chapter draws pictures only"}};
+    for (const auto& c : bad) {
+        const course::ProgramRun ended = run(c.arguments);
+        CHECK_MESSAGE(ended.exit_code == 2, c.arguments);
+        CHECK_MESSAGE(ended.output.find(c.sentence) != std::string::npos, ended.output);
+    }
+    std::filesystem::remove_all(out);
+    const course::ProgramRun explained = run("--explain --particles 1");
+    CHECK_MESSAGE(explained.exit_code == 0, explained.output);
+    CHECK(explained.output.find("sort_cells_kernel") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(out));  // explaining makes nothing
+    for (const char* arguments :
+         {"--particles 1 --width 16 --height 16", "--particles 2", "--particles 20000"}) {
+        const course::ProgramRun ended = run(std::string(arguments) + " --max-exponent 12");
+        CHECK_MESSAGE(ended.exit_code == 0, ended.output);
+        CHECK(ended.output.find("the error is 0") != std::string::npos);
+        for (const char* file : {"search.png", "times.png", "result.json"})
+            CHECK_MESSAGE(std::filesystem::file_size(out / file) > 0, file);
+    }
+    std::filesystem::remove_all(out);
 }
