@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+/// What the chapters stand on and never teach: options, errors, device memory, pictures, OpenGL.
 namespace course {
 
 /// What the user asked for can't be done: exit code 2.

@@ -111,11 +111,12 @@ inline void check_state(const Water& water, const Summary& summary, int step, fl
         std::snprintf(text, sizeof text, "dt %g s is over the limit %g s (%s)", dt_s, limit.smallest_s(),
                       reason);
     } else {
-        std::snprintf(
-            text, sizeof text,
-            "dt %g s is within the limit %g s, so look at the start: particles too close together, or "
-            "faster than the sound speed allows",
-            dt_s, limit.smallest_s());
+        const char* suspect =
+            fluid.viscosity_m2_per_s > 0
+                ? "particles that start too close together, or a scene faster than its sound"
+                : "no viscosity: nothing takes the energy of collisions (--viscosity 1 is the scene's)";
+        std::snprintf(text, sizeof text, "dt %g s is within the limit %g s, so the likely cause is %s", dt_s,
+                      limit.smallest_s(), suspect);
     }
     throw course::Unstable(message + text);
 }

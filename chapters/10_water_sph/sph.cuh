@@ -9,6 +9,7 @@
 #include "10_water_sph/smoothing_kernels.cuh"
 #include "10_water_sph/walls.cuh"
 
+/// Chapter 10: water by smoothed particle hydrodynamics.
 namespace sph {
 
 /// How pressure follows from density. Both have the same slope, c^2, at the rest density.
