@@ -98,7 +98,7 @@ void ShaderProgram::set(const char* name, const glm::vec4& value) const {
 void ShaderProgram::set(const char* name, const glm::mat4& value) const {
     glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(value));
 }
-void ShaderProgram::set(const char* name, const std::vector<glm::vec3>& values) const {
+void ShaderProgram::set(const char* name, const std::array<glm::vec3, 4>& values) const {
     glUniform3fv(location(name), GLsizei(values.size()), glm::value_ptr(values.front()));
 }
 

@@ -1,6 +1,7 @@
 /// @file
 /// GLSL programs made from files in the shader folder.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
@@ -31,7 +32,7 @@ class ShaderProgram {
     void set(const char* name, const glm::vec3& value) const;
     void set(const char* name, const glm::vec4& value) const;
     void set(const char* name, const glm::mat4& value) const;
-    void set(const char* name, const std::vector<glm::vec3>& values) const;
+    void set(const char* name, const std::array<glm::vec3, 4>& values) const;
 
   private:
     GLint location(const char* name) const { return glGetUniformLocation(program_.id(), name); }

@@ -209,6 +209,7 @@ in_fence { print; if ($0 ~ /^ *``` *$/) in_fence = 0; next }
     flush_paragraph()
     in_fence = 1
     math = $0 ~ /^ *``` *math *$/
+    sub(/glsl/, "cpp") # near enough to be coloured
     if (math) printf "\\f["
     else print
     next

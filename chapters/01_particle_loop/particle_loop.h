@@ -90,7 +90,9 @@ inline Uniforms random_start(std::uint64_t seed, std::uint32_t id, std::uint32_t
 /// Starts a life: picks a jet, shakes its velocity a little, and lets the droplet fly for a random part of
 /// the step. (All droplets of one step exactly in the nozzle would fly as one shell, and be seen as one.)
 /// @return the droplet's age in seconds
-constexpr float emit(const Fountain& fountain, const Uniforms& r, glm::vec3& position, glm::vec3& velocity) {
+// Always inlined: a call would want the fountain in memory, and every thread of a kernel would copy it there.
+[[gnu::always_inline]] constexpr float emit(const Fountain& fountain, const Uniforms& r, glm::vec3& position,
+                                            glm::vec3& velocity) {
     const int jet = int(r.u[0] * float(fountain.jet_count));
     // The sum of two uniform numbers is small more often than large: a jet is densest in its middle.
     const glm::vec3 deviation{r.u[1] + r.u[2] - 1.0f, r.u[3] + r.u[4] - 1.0f, r.u[5] + r.u[6] - 1.0f};

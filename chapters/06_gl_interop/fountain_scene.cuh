@@ -61,9 +61,9 @@ inline std::string explain(const FountainScene& scene) {
 inline Look fountain_look(Drawing drawing) {
     Look look;
     look.drawing = drawing;
-    look.palette = {
-        {{0.010f, 0.100f, 0.290f}, {0.030f, 0.260f, 0.500f}, {0.260f, 0.600f, 0.760f}, {0.86f, 0.93f, 0.96f}},
-        7.0f};
+    look.palette = {{glm::vec3(0.010f, 0.100f, 0.290f), glm::vec3(0.030f, 0.260f, 0.500f),
+                     glm::vec3(0.260f, 0.600f, 0.760f), glm::vec3(0.86f, 0.93f, 0.96f)},
+                    7.0f};
     look.region = {{-2.6f, 0, -2.6f}, {2.6f, 3.4f, 2.6f}};
     look.floor_tile_m = 1;
     look.occlusion_radii = 4;

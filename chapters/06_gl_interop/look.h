@@ -2,23 +2,23 @@
 /// How a scene looks: plain structs, all colours in linear light. From them follow the shaders that run and
 /// the OpenGL objects that are made.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
-#include <vector>
 
 /// Chapter 06: particles on screen.
 namespace interop {
 
 /// Four colours of rising speed; the shader mixes between neighbours.
 struct Palette {
-    std::vector<glm::vec3> colours;  ///< exactly four
-    float top_m_per_s = 1;           ///< speed of the last colour
+    std::array<glm::vec3, 4> colours;
+    float top_m_per_s = 1;  ///< speed of the last colour
 };
 
 /// Deep blue at rest, turquoise in motion, white foam at `top_m_per_s` and above.
 inline Palette water_palette(float top_m_per_s) {
-    return {
-        {{0.003f, 0.060f, 0.185f}, {0.006f, 0.185f, 0.400f}, {0.060f, 0.440f, 0.620f}, {0.82f, 0.91f, 0.95f}},
-        top_m_per_s};
+    return {{glm::vec3(0.003f, 0.060f, 0.185f), glm::vec3(0.006f, 0.185f, 0.400f),
+             glm::vec3(0.060f, 0.440f, 0.620f), glm::vec3(0.82f, 0.91f, 0.95f)},
+            top_m_per_s};
 }
 
 struct Light {

@@ -78,7 +78,8 @@ if(COURSE_USE_CUDA)
     find_package(CUDAToolkit REQUIRED)
     add_library(course_cuda INTERFACE)
     target_link_libraries(course_cuda INTERFACE CUDA::cudart_static)
-    # 20012: GLM marks defaulted functions __host__ __device__, which nvcc says it ignores.
+    # Two remarks of nvcc on what is meant: 20012, GLM marks defaulted functions __host__ __device__; 20050, kernels
+    # in headers are inline, so that a program may include them in several files.
     # Relaxed constexpr: kernels call the constexpr functions of plain C++ headers (chapter 01's physics).
     target_compile_options(course_cuda INTERFACE
         $<$<COMPILE_LANGUAGE:CUDA>:-diag-suppress=20012 --expt-relaxed-constexpr>)

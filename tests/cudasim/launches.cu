@@ -55,7 +55,7 @@ __global__ void shared_forms_kernel(int* values) {
     watched[t] = 5;
     if (t == 0) single = 100;
     __syncthreads();
-    values[t] = first[63 - t] + second[t] + static_cast<int>(vectors[1][t].w) + single + watched[63 - t];
+    values[blockIdx.x * 64 + t] = first[63 - t] + second[t] + static_cast<int>(vectors[1][t].w) + single + watched[63 - t];
 }
 __constant__ float coefficients[4];
 __device__ int counter;
@@ -137,11 +137,11 @@ TEST_CASE("shared memory: dynamic and in all forms of declaration") {
     for (int t = 0; t < 64; ++t) expected_reversed[t] = 0.5 * (63 - t);
     course::check_equal(reversed.download(), expected_reversed, "value", "thread");
 
-    DeviceBuffer<int> sums(64);
+    DeviceBuffer<int> sums(3 * 64);
     shared_forms_kernel<<<3, 64>>>(sums.data());
     CUDA_CHECK(cudaGetLastError());
-    std::vector<int> expected(64);
-    for (int t = 0; t < 64; ++t) expected[t] = 63 - t + 2 * t + 4 + 100 + 5;
+    std::vector<int> expected(3 * 64);
+    for (int i = 0; i < 3 * 64; ++i) expected[i] = 63 - i % 64 + 2 * (i % 64) + 4 + 100 + 5;
     course::check_equal(sums.download(), expected, "sum", "thread");
 }
 

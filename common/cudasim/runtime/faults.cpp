@@ -33,15 +33,18 @@ std::string reason_of(int signal, const void* address) {
         reason += ", " + std::to_string(static_cast<const char*>(address) - near->end()) +
                   " bytes behind the end of " + text_of(*near);
     if (reinterpret_cast<std::uintptr_t>(address) < page_bytes()) reason += ": a null pointer";
-    return reason + "\nthe asan preset names the line";
+    return reason;
 }
 
 // Not all it calls is allowed in a signal handler, strictly. The process is about to end: what counts is that the
 // message comes out nearly always.
 void report_fault(int signal, siginfo_t* info, void*) {
-    for (int i = 0; i < kCount; ++i)
-        if (kSignals[i] == signal) sigaction(signal, &previous[i], nullptr);
-    if (running_launch) say("crash in " + running_thread_text() + "\n" + reason_of(signal, info->si_addr));
+    for (int i = 0; i < kCount; ++i) sigaction(kSignals[i], &previous[i], nullptr);
+    if (running_launch) {
+        const bool thread_known = signal == SIGABRT || Worker::mine().running_thread_waited();
+        say("crash in " + (thread_known ? running_thread_text() : running_block_text()) + "\n" +
+            reason_of(signal, info->si_addr) + (thread_known ? "" : "\nthe asan preset names the thread and the line"));
+    }
     if (signal == SIGABRT) raise(signal);  // the others happen again when the handler returns
 }
 

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "runtime/report.h"
+#include "runtime/settings.h"
 
 namespace cudasim {
 namespace {
@@ -19,6 +20,7 @@ HostCall::HostCall(const char* function) {
         say(std::string(function) + " was called by a kernel; only host code may\nin " + running_thread_text());
         std::abort();
     }
+    settings();  // a wrong setting ends the program at its first call, not somewhere later
     lock_ = std::unique_lock(runtime_mutex());
 }
 

@@ -24,9 +24,9 @@ std::string text_of(const LaunchRequest& launch) {
     return std::string("kernel ") + launch.kernel + " (launched at " + text_of(launch.file, launch.line) + ")";
 }
 
-std::string running_thread_text() {
-    return text_of(*running_launch) + ", block " + text_of(blockIdx) + ", thread " + text_of(threadIdx);
-}
+std::string running_block_text() { return text_of(*running_launch) + ", block " + text_of(blockIdx); }
+
+std::string running_thread_text() { return running_block_text() + ", thread " + text_of(threadIdx); }
 
 uint3 thread_index_of(unsigned number) {
     return {number % blockDim.x, number / blockDim.x % blockDim.y, number / (blockDim.x * blockDim.y)};

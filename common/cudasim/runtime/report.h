@@ -19,7 +19,10 @@ std::string text_of(uint3 index);
 std::string text_of(const char* file, int line);
 /// "kernel forces_kernel (launched at main.cu:30)"
 std::string text_of(const LaunchRequest& launch);
-/// "kernel ..., block (0,0,0), thread (5,0,0)": what the calling OS thread is running.
+/// "kernel ..., block (0,0,0)": what the calling OS thread is running.
+std::string running_block_text();
+/// The same with the thread, where threadIdx is stored for certain: in all that a kernel calls. (Between calls the
+/// optimiser may keep it in a register.)
 std::string running_thread_text();
 
 /// The thread of a block with that number.

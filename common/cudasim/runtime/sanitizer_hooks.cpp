@@ -25,7 +25,7 @@ void install_sanitizer_hooks() { __asan_set_error_report_callback(after_report);
 
 }  // namespace cudasim
 
-// Called by UndefinedBehaviorSanitizer with each report, before it ends the program.
+// Called by UndefinedBehaviorSanitizer before each report.
 extern "C" void __ubsan_on_report() {
     if (cudasim::running_launch)
         cudasim::say("undefined behaviour in " + cudasim::running_thread_text());
@@ -35,9 +35,9 @@ void cudasim::install_sanitizer_hooks() {}
 #endif
 
 #if defined(__SANITIZE_THREAD__)
-// Called by ThreadSanitizer with each report, in the thread that made the second of the two accesses.
+// Called by ThreadSanitizer after each report, in the thread that made the second of the two accesses.
 extern "C" void __tsan_on_report(void*) {
     if (cudasim::running_launch)
-        cudasim::say("the data race below was found in " + cudasim::running_thread_text());
+        cudasim::say("the data race above was found in " + cudasim::running_thread_text());
 }
 #endif

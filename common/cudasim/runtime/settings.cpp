@@ -11,7 +11,8 @@ namespace {
 
 [[noreturn]] void reject(const char* name, const char* value, const char* expected) {
     std::fprintf(stderr, "cudasim: %s is '%s', but it must be %s\n", name, value, expected);
-    std::exit(2);
+    std::fflush(nullptr);
+    std::_Exit(2);  // without destructors: they would ask for the settings again
 }
 
 unsigned number(const char* name, unsigned fallback, unsigned least, const char* expected) {

@@ -32,6 +32,8 @@ class Worker {
     WarpExchange wait_for_warp(std::uint64_t value, bool predicate, const WaitPlace& place);
     void* dynamic_shared() const;
 
+    /// Had the running thread to wait before? Then threadIdx is certainly stored.
+    bool running_thread_waited() const { return current_->waited; }
     /// Is `address` just below the running thread's stack, where deep recursion ends?
     bool is_stack_overflow(const void* address) const { return current_->stack.guards(address); }
     /// Does `address` lie behind the end of the dynamic shared memory?

@@ -1,7 +1,8 @@
 // Kernels that crash, one for each number. In the default build, without a sanitizer.
-#include <cuda_runtime.h>
-
+#undef NDEBUG
 #include <cassert>
+
+#include <cuda_runtime.h>
 
 __global__ void null_kernel(int* values) {
     if (blockIdx.x == 1 && threadIdx.x == 5) values[0] = 1;
@@ -19,6 +20,11 @@ __global__ void deep_kernel(int* values) { values[threadIdx.x] = depth_of(100000
 __global__ void assert_kernel(int* values) { assert(threadIdx.x < 7 && values); }
 
 __global__ void divide_kernel(int* values) { values[threadIdx.x] = 100 / values[threadIdx.x]; }
+
+__global__ void late_kernel(int* values) {
+    __syncthreads();
+    if (threadIdx.x == 9) *values = 1;
+}
 
 int main(int, char** arguments) {
     int *values = nullptr, *null = nullptr;
@@ -40,6 +46,7 @@ int main(int, char** arguments) {
             freed_kernel<<<1, 32>>>(pointer);
             break;
         }
+        case 6: late_kernel<<<1, 32>>>(null); break;
     }
     return 0;
 }
