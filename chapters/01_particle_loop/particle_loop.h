@@ -52,8 +52,8 @@ constexpr void move(const Fountain& fountain, glm::vec3& position, glm::vec3& ve
     velocity += fountain.dt_s * acceleration(fountain, velocity);
     position += fountain.dt_s * velocity;  // the new velocity: that is what makes it semi-implicit
 
-    // The floor, without a branch: choose two factors, then multiply always. A branch on data would keep the
-    // compiler from moving 4, 8 or 16 droplets with one instruction.
+    // The floor, without a branch: choose two factors, then multiply always. A branch on data keeps some
+    // compilers from moving 4, 8 or 16 droplets with one instruction.
     const bool below = position.y < 0.0f;
     const float bounce = below ? -fountain.restitution : 1.0f;
     const float grip = below ? fountain.floor_grip : 1.0f;

@@ -75,7 +75,7 @@ class Recorder {
     void add(const Start& start, const Summary& now, int step) {
         table_.row({step, step * double(start.dt_s), now.front_m, now.kinetic_J,
                     now.kinetic_J + now.potential_J, now.density_sum / start.water.size(),
-                    now.highest_speed});
+                    now.highest_density, now.highest_speed});
         if (!view_) return;
         view_->draw(start.water, camera_);
         stills_.push_back(view_->image());

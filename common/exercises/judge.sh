@@ -63,6 +63,7 @@ learner_line() {
 report_wrong() {
     sed -n '/^FAILED: /,/^verdict: /p' "$case_log" | sed -e 1d -e '/verdict: /d' | cut -c 1-160 | head -n 14
     diagnosis | sed 's/^/  /' | head -n 3  # of the simulator, if the failed check is a launch that it stopped
+    grep '^  right while threads' "$case_log" || true
 }
 
 # What a sanitizer or the simulator says, without addresses: "heap-buffer-overflow", "WRITE of size 4".
@@ -108,15 +109,23 @@ trap 'rm -f "$case_log"' EXIT
 mkdir -p "$(dirname "$log")"
 : >"$log"
 
+run_case() {  # NAME; sets kind, code
+    local filter=${1//\\/\\\\}
+    code=0
+    run --test-case="${filter//,/\\,}" 2>&1 | shorten >"$case_log" || code=${PIPESTATUS[0]}
+    { echo "== case: $1"; cat "$case_log"; } >>"$log"
+    kind=$(kind_of "$code")
+}
+
 mapfile -t cases < <(run --list-test-cases 2>"$case_log")
 [ ${#cases[@]} -gt 0 ] || cases=("(list of cases)")
 n_passed=0 first_failed='' report='' also=()
 for name in "${cases[@]}"; do
-    filter=${name//\\/\\\\}
-    code=0
-    run --test-case="${filter//,/\\,}" 2>&1 | shorten >"$case_log" || code=${PIPESTATUS[0]}
-    { echo "== case: $name"; cat "$case_log"; } >>"$log"
-    kind=$(kind_of "$code")
+    run_case "$name"
+    if [ "$kind" = passed ]; then  # Is it still right when threads run in another order, as they may on a GPU?
+        CUDASIM_ORDER=shuffled run_case "$name"
+        [ "$kind" = passed ] || echo '  right while threads run in order, wrong when they do not: do they race for something?' >>"$case_log"
+    fi
     if $kinds_only; then
         printf '%s\t%s\n' "$kind" "$name"
     elif [ "$kind" = passed ]; then

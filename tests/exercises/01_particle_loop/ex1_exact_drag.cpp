@@ -1,33 +1,25 @@
 // Exercise 01.1: the exact step, against the solution of the equation in double precision.
 #include "ex1_exact_drag.h"
 
+#include <cstdio>
+
 #include "tests/support/course_test.h"
 
 using namespace particle_loop;
 
 namespace {
 
+struct Flight {
+    glm::dvec3 position_m, velocity_m_per_s;
+};
+
 /// The flight of t seconds in double precision, by a series where the closed form loses digits.
-std::vector<double> exact_flight(const Fountain& f, const Particle& start, double t) {
+Flight exact_flight(const Fountain& f, const Particle& start, double t) {
     const double k = f.drag_per_s, h = k * t;
     const double reach = h < 1e-3 ? t * (1 - h / 2 + h * h / 6 - h * h * h / 24) : -std::expm1(-h) / k;
     const double fall = h < 1e-3 ? t * t * (0.5 - h / 6 + h * h / 24) : (t - reach) / k;
-    std::vector<double> numbers;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double g = axis == 1 ? -double(f.gravity_m_per_s2) : 0.0;
-        numbers.push_back(start.position_m[axis] + reach * start.velocity_m_per_s[axis] + fall * g);
-        numbers.push_back(std::exp(-h) * start.velocity_m_per_s[axis] + reach * g);
-    }
-    return numbers;
-}
-
-std::vector<double> numbers_of(const Particle& p) {
-    std::vector<double> numbers;
-    for (int axis = 0; axis < 3; ++axis) {
-        numbers.push_back(p.position_m[axis]);
-        numbers.push_back(p.velocity_m_per_s[axis]);
-    }
-    return numbers;
+    const glm::dvec3 x(start.position_m), v(start.velocity_m_per_s), g(0, -f.gravity_m_per_s2, 0);
+    return {x + reach * v + fall * g, std::exp(-h) * v + reach * g};
 }
 
 /// `steps` steps that make up t seconds, against the formula.
@@ -38,10 +30,13 @@ void check_flight(float drag_per_s, double t, int steps, course::Tolerance toler
     const ExactStep step = exact_step(drag_per_s, float(t / steps));
     Particle p = start;
     for (int s = 0; s < steps; ++s) move_exactly(fountain, step, p.position_m, p.velocity_m_per_s);
-    course::check_close(numbers_of(p), exact_flight(fountain, start, t), tolerance,
-                        "position (even) or velocity (odd), drag " + std::to_string(drag_per_s) + ", " +
-                            std::to_string(steps) + " steps",
-                        "number");
+    const Flight exact = exact_flight(fountain, start, t);
+    char what[80];
+    std::snprintf(what, sizeof what, " after %g s in %d steps, drag %g per s,", t, steps, drag_per_s);
+    course::check_close(std::vector<glm::dvec3>{glm::dvec3(p.position_m)}, {exact.position_m}, tolerance,
+                        std::string("position") + what, "droplet");
+    course::check_close(std::vector<glm::dvec3>{glm::dvec3(p.velocity_m_per_s)}, {exact.velocity_m_per_s},
+                        tolerance, std::string("velocity") + what, "droplet");
 }
 
 // Three roundings of a sum of numbers below 16, each by up to 4.8e-7.
