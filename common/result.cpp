@@ -1,6 +1,7 @@
 #include "common/result.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -11,7 +12,8 @@ namespace course {
 
 std::string format_number(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
+    const bool long_number = std::abs(value) >= 9999.5 && std::abs(value) < 1e9;  // %g would write 2.526e+04
+    std::snprintf(text, sizeof text, long_number ? "%.0f" : "%.4g", value);
     return text;
 }
 

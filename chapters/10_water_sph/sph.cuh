@@ -50,7 +50,8 @@ inline __host__ __device__ T pressure_of(const Fluid& fluid, T density) {
 //! [pressure]
 
 //! [density_kernel]
-/// One thread per particle, particles sorted by cell. Density by summation, then the pressure term p / rho^2
+/// One thread per particle, particles sorted by cell, so that a row of cells is one stretch of memory. Density by
+/// summation, then the pressure term p / rho^2
 /// that the force pass needs of every neighbour.
 template <EquationOfState kState>
 __global__ void density_kernel(float* density, float* pressure_term, const float4* position,
@@ -67,12 +68,13 @@ __global__ void density_kernel(float* density, float* pressure_term, const float
     float sum = 0;  // of h^3 W, the particle itself included
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3) {
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
-            const std::uint32_t end = ranges.cell_last[last_cell];
+            const std::uint32_t first = ranges.cell_first[first_cell];
+            const std::uint32_t count = ranges.cell_last[last_cell] - first;
+            const float4* x_row = position + first;
             float row = 0;
 #pragma omp simd reduction(+ : row)
-            for (std::uint32_t j = ranges.cell_first[first_cell]; j < end; ++j) {
-                const float dx = image.x - position[j].x, dy = image.y - position[j].y,
-                            dz = image.z - position[j].z;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
                 row += poly6((dx * dx + dy * dy + dz * dz) * per_h_squared);
             }
             sum += row;
@@ -101,24 +103,26 @@ __global__ void force_kernel(float4* acceleration, const float4* position, const
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
         const glm::vec3 v = sign * grid::xyz(velocity[i]);
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
-            const std::uint32_t end = ranges.cell_last[last_cell];
+            const std::uint32_t first = ranges.cell_first[first_cell];
+            const std::uint32_t count = ranges.cell_last[last_cell] - first;
+            const float4 *x_row = position + first, *v_row = velocity + first;
+            const float *density_row = density + first, *term_row = pressure_term + first;
             float px = 0, py = 0, pz = 0, vx = 0, vy = 0, vz = 0;
 #pragma omp simd reduction(+ : px, py, pz, vx, vy, vz)
-            for (std::uint32_t j = ranges.cell_first[first_cell]; j < end; ++j) {
-                const float dx = image.x - position[j].x, dy = image.y - position[j].y,
-                            dz = image.z - position[j].z;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
                 const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
                 // The particle itself, and one at the very same place, have no direction: they don't push.
                 const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
-                const float push = (own_term + pressure_term[j]) * spiky_slope(q) * per_r;
+                const float push = (own_term + term_row[k]) * spiky_slope(q) * per_r;
                 px += push * dx;
                 py += push * dy;
                 pz += push * dz;
                 if constexpr (kViscous) {
-                    const float drag = viscosity_laplacian(q) / density[j];
-                    vx += drag * (velocity[j].x - v.x);
-                    vy += drag * (velocity[j].y - v.y);
-                    vz += drag * (velocity[j].z - v.z);
+                    const float drag = viscosity_laplacian(q) / density_row[k];
+                    vx += drag * (v_row[k].x - v.x);
+                    vy += drag * (v_row[k].y - v.y);
+                    vz += drag * (v_row[k].z - v.z);
                 }
             }
             pressure += sign * glm::vec3(px, py, pz);  // back through the mirror

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "cudasim/host_access.h"
 #include "runtime/poison.h"
 #include "runtime/report.h"
 #include "runtime/sanitizer_hooks.h"
@@ -14,6 +15,16 @@ namespace cudasim {
 namespace {
 
 constexpr std::size_t kAlignment = 256;  // as cudaMalloc promises
+
+void set_host_access(const Allocation* allocation, bool allowed) {
+#if defined(__SANITIZE_ADDRESS__)
+    if (!allocation || allocation->kind != MemoryKind::kDevice) return;
+    if (allowed) ASAN_UNPOISON_MEMORY_REGION(allocation->begin, allocation->bytes);
+    if (!allowed) ASAN_POISON_MEMORY_REGION(allocation->begin, allocation->bytes);
+#else
+    (void)allocation, (void)allowed;
+#endif
+}
 
 }  // namespace
 
@@ -97,23 +108,14 @@ void free_allocation(const Allocation& allocation) {
 #endif
 }
 
-DeviceAccess::DeviceAccess(const Allocation* one) : one_(one), all_(false) { set(true); }
-DeviceAccess::DeviceAccess() : one_(nullptr), all_(true) { set(true); }
-DeviceAccess::~DeviceAccess() { set(false); }
+AccessTo::AccessTo(const Allocation* allocation) : allocation_(allocation) { set_host_access(allocation_, true); }
+AccessTo::~AccessTo() { set_host_access(allocation_, false); }
 
-void DeviceAccess::set(bool allowed) const {
-#if defined(__SANITIZE_ADDRESS__)
-    const auto set_one = [&](const Allocation& allocation) {
-        if (allocation.kind != MemoryKind::kDevice) return;
-        if (allowed) ASAN_UNPOISON_MEMORY_REGION(allocation.begin, allocation.bytes);
-        if (!allowed) ASAN_POISON_MEMORY_REGION(allocation.begin, allocation.bytes);
-    };
-    if (one_) set_one(*one_);
-    if (all_)
-        for (const auto& entry : Allocations::all().by_address()) set_one(entry.second);
-#else
-    (void)allowed;
-#endif
+HostAccess::HostAccess() {
+    for (const auto& entry : Allocations::all().by_address()) set_host_access(&entry.second, true);
+}
+HostAccess::~HostAccess() {
+    for (const auto& entry : Allocations::all().by_address()) set_host_access(&entry.second, false);
 }
 
 std::string text_of(const Allocation& allocation) {

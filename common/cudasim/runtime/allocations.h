@@ -56,19 +56,16 @@ void free_allocation(const Allocation& allocation);
 /// Of cudaMalloc.
 void free_all_device_memory();
 
-/// In a build with AddressSanitizer host code may not touch device memory, except while one of these lives.
-class DeviceAccess {
+/// Lets host code touch one allocation (nullptr: none) while it lives; see HostAccess, which does so for all.
+class AccessTo {
   public:
-    explicit DeviceAccess(const Allocation* one);  ///< to one allocation; nullptr: to none
-    DeviceAccess();                                ///< to all
-    ~DeviceAccess();
-    DeviceAccess(const DeviceAccess&) = delete;
-    DeviceAccess& operator=(const DeviceAccess&) = delete;
+    explicit AccessTo(const Allocation* allocation);
+    ~AccessTo();
+    AccessTo(const AccessTo&) = delete;
+    AccessTo& operator=(const AccessTo&) = delete;
 
   private:
-    void set(bool allowed) const;
-    const Allocation* one_;
-    bool all_;
+    const Allocation* allocation_;
 };
 
 /// "the 4000 bytes allocated at main.cu:12"

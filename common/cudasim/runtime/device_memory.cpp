@@ -82,7 +82,7 @@ cudaError_t allocate(void** pointer, std::size_t bytes, MemoryKind kind, const c
     *pointer = made.begin;
     if (on_device) note_allocation(bytes);
     Allocations::all().add(std::move(made));
-    const DeviceAccess forbidden_from_now_on(holder_of(*pointer));
+    const AccessTo until_now(holder_of(*pointer));
     return cudaSuccess;
 }
 
@@ -141,7 +141,7 @@ cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpy
          {check_range(to, bytes, target, "destination"), check_range(from, bytes, source, "source"),
           check_place(target, to_device, kind, "destination"), check_place(source, from_device, kind, "source")})
         if (!why.empty()) return refuse(cudaErrorInvalidValue, "cudaMemcpy", file, line, why);
-    const DeviceAccess write(target), read(source);
+    const AccessTo write(target), read(source);
     std::memmove(to, from, bytes);
     return set_last_error(take_kernel_fault());
 }
@@ -153,7 +153,7 @@ cudaError_t cudaMemset(void* to, int byte, std::size_t bytes, const char* file, 
     std::string why = check_range(to, bytes, target, "destination");
     if (why.empty() && !target) why = "the destination is not device memory";
     if (!why.empty()) return refuse(cudaErrorInvalidValue, "cudaMemset", file, line, why);
-    const DeviceAccess write(target);
+    const AccessTo write(target);
     std::memset(to, byte, bytes);
     return cudaSuccess;
 }

@@ -1,4 +1,5 @@
 // What happens at `kernel<<<grid, block, shared>>>(arguments)`.
+#include "cudasim/host_access.h"
 #include "runtime/allocations.h"
 #include "runtime/faults.h"
 #include "runtime/host_call.h"
@@ -56,7 +57,7 @@ void run_grid(const LaunchRequest& request) {
                       std::to_string(request.shared_bytes) + " bytes of dynamic shared memory, but the limit is " +
                           std::to_string(kSharedLimit));
     note_launch(request);
-    const DeviceAccess to_all_memory;
+    const HostAccess for_the_kernel;
     report_faults();
     const bool good = checks_races() ? run_in_all_orders(request)
                                      : run_in_order(request, settings().order, settings().workers);
