@@ -7,7 +7,8 @@
 
 namespace course {
 
-/// Writes `bytes` to `path` through a temporary file beside it and a rename.
+/// Writes `bytes` to `path` through a temporary file beside it and a rename. A link is followed; what is no
+/// regular file (a pipe, /dev/stdout) is written into as it is.
 /// @throws BadInput naming the file and the system's reason; an older file at `path` is then still whole.
 void write_file(const std::filesystem::path& path, const void* bytes, std::size_t count);
 void write_file(const std::filesystem::path& path, const std::string& text);

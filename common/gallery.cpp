@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     const std::filesystem::path out = argv[1];
+    int status = 0;
     try {
         std::vector<std::string> folders;
         for (const auto& entry : std::filesystem::directory_iterator(out))
@@ -82,12 +83,21 @@ int main(int argc, char** argv) {
         std::string html = kHead;
         for (const std::string& folder : folders) {
             std::ifstream file(out / folder / "result.json");
-            add_chapter(html, folder, nlohmann::json::parse(file));
+            std::string section;
+            try {
+                add_chapter(section, folder, nlohmann::json::parse(file));
+                html += section;
+            } catch (
+                const nlohmann::json::exception& error) {  // one bad file must not hide the other chapters
+                std::fprintf(stderr, "course_gallery: left out %s/result.json: %s\n", folder.c_str(),
+                             error.what());
+                status = 2;
+            }
         }
         course::write_file(out / "index.html", html + "</body></html>\n");
     } catch (const std::exception& error) {
         std::fprintf(stderr, "course_gallery: %s\n", error.what());
         return 2;
     }
-    return 0;
+    return status;
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 
@@ -49,7 +50,15 @@ void Program::parse(int argc, char** argv) {
     app.add_option("--steps", parser_->steps, "number of time steps")->capture_default_str();
     app.add_option("--dt", options.dt_s, "time step in seconds (0: chosen from the stability limit)")
         ->capture_default_str();
-    app.add_option("--seed", options.seed, "seed of the random numbers")->capture_default_str();
+    app.add_option("--seed", options.seed, "seed of the random numbers")
+        ->capture_default_str()
+        ->check([](const std::string& text) {  // strtoull would turn -1 into 2^64 - 1
+            const bool number = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            errno = 0;
+            if (number) std::strtoull(text.c_str(), nullptr, 10);
+            return number && errno == 0 ? std::string{}
+                                        : "must be a whole number from 0 to 2^64 - 1, not " + text;
+        });
     if (!scenes.empty()) {
         std::string names;
         for (const std::string& scene : scenes) names += (names.empty() ? "" : ", ") + scene;
@@ -121,10 +130,21 @@ int Program::run(int argc, char** argv, const std::function<void()>& body) {
             std::fprintf(stderr, "error: %s\n", second.what());
         }
         return 3;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "error: this machine has not the memory for %u particles\n", options.particles);
+        return 2;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "error: %s\n", error.what());
         return 1;
     }
+}
+
+void require_memory(double bytes) {
+    const double here = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (bytes > here)
+        throw BadInput("this needs " + format_number(bytes / (1 << 30)) +
+                       " GiB of memory, and the machine has " + format_number(here / (1 << 30)) +
+                       " GiB: ask for fewer particles");
 }
 
 Progress::Progress(std::string what, long total)

@@ -62,6 +62,11 @@ class Program {
     std::unique_ptr<Result> result_;
 };
 
+/// For programs that would fill the host's memory: asked first, the answer is a sentence, and nobody is
+/// killed.
+/// @throws BadInput if the machine has less than `bytes` of memory altogether
+void require_memory(double bytes);
+
 /// A line on standard error that tells how far a long computation is.
 class Progress {
   public:

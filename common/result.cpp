@@ -91,7 +91,8 @@ void Result::save(const std::string& command, const std::filesystem::path& csv) 
         json["tables"].push_back(
             {{"caption", table.caption}, {"columns", table.columns}, {"rows", table.rows}});
     json["notes"] = notes_;
-    write_file(folder_ / "result.json", json.dump(2) + "\n");
+    write_file(folder_ / "result.json",
+               json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!csv.empty() && !tables_.empty()) write_file(csv, tables_.front().csv());
 }
 

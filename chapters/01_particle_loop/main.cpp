@@ -155,6 +155,7 @@ int main(int argc, char** argv) {
         if (!(restitution < 0)) fountain.restitution = restitution;
         check(fountain);
         if (program.options.explain) return explain(fountain, program.options.particles);
+        course::require_memory(double(program.options.particles) * sizeof(Particle));
         show(program, fountain);
         if (no_measure) return;
         compare_layouts(program, make_scene("crown"));

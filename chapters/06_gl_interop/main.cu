@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <list>
 
+#include "01_particle_loop/checks.h"
 #include "01_particle_loop/scenes.h"
 #include "06_gl_interop/measure.cuh"
 #include "06_gl_interop/wide_angle.h"
@@ -152,6 +153,7 @@ int main(int argc, char** argv) {
         Fountain fountain = particle_loop::make_scene(options.scene);
         fountain.seed = options.seed;
         if (options.dt_s > 0) fountain.dt_s = options.dt_s;
+        particle_loop::check(fountain);
         if (options.explain) {
             std::printf("%s", interop::explain(scene).c_str());
             return;

@@ -106,7 +106,7 @@ inline void check_state(const Water& water, const Summary& summary, int step, fl
     std::string message = text;
     if (dt_s > limit.smallest_s()) {
         const char* reason = dt_s > limit.sound_s       ? "0.4 h / c, set by the sound speed"
-                             : dt_s > limit.viscosity_s ? "0.125 h^2 / nu, set by the viscosity"
+                             : dt_s > limit.viscosity_s ? "0.0625 h^2 / nu, set by the viscosity"
                                                         : "0.25 sqrt(h / g), set by gravity";
         std::snprintf(text, sizeof text, "dt %g s is over the limit %g s (%s)", dt_s, limit.smallest_s(),
                       reason);

@@ -39,7 +39,8 @@ inline const Scene& find_scene(const std::vector<Scene>& scenes, const std::stri
 
 //! [fill_block]
 /// Exactly `particles` points on a cubic lattice, layer by layer from the floor of the block. Each is moved
-/// by up to a twentieth of the spacing: a perfect lattice would collapse in perfect rows, which no water does.
+/// by up to a twentieth of the spacing: a perfect lattice would collapse in perfect rows, which no water
+/// does.
 /// @param spacing_m  out: the lattice's spacing, from which mass and support radius follow
 inline std::vector<float4> fill_block(const Scene& scene, std::uint32_t particles, std::uint64_t seed,
                                       float& spacing_m) {

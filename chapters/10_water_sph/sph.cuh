@@ -50,9 +50,8 @@ inline __host__ __device__ T pressure_of(const Fluid& fluid, T density) {
 //! [pressure]
 
 //! [density_kernel]
-/// One thread per particle, particles sorted by cell, so that a row of cells is one stretch of memory. Density by
-/// summation, then the pressure term p / rho^2
-/// that the force pass needs of every neighbour.
+/// One thread per particle, particles sorted by cell, so that a row of cells is one stretch of memory.
+/// Density by summation, then the pressure term p / rho^2 that the force pass needs of every neighbour.
 template <EquationOfState kState>
 __global__ void density_kernel(float* density, float* pressure_term, const float4* position,
                                grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid, Box box,

@@ -6,13 +6,13 @@
 #   COURSE_USE_CUDA           the answer: TRUE for nvcc, FALSE for the simulator.
 #
 #   course_target(<target> SOURCES a.cu b.cpp ... [INCLUDE_DIRS dir...] [HEADERS file.cuh...]
-#                 [SANITIZE address|thread] [DEFINITIONS name...])
+#                 [SANITIZE address|thread])
 #
 # takes an existing executable or library, adds the sources, the include roots (the repository and chapters/) and
 # links `course_cuda`. .cu files are CUDA for nvcc, and for the simulator C++ that common/cudasim/rewrite.cpp
 # makes from them. In a simulator build
 #   INCLUDE_DIRS  are searched before everything else, and the .cuh files in them are rewritten too;
-#   HEADERS       names .cuh files that do not exist yet when CMake runs (made by another command);
+#   HEADERS       names the files to be rewritten in folders outside of the tree, where another command makes them;
 #   SANITIZE      builds this one target, and the simulator it links, with a sanitizer (nvcc: no effect).
 
 set(COURSE_CUDA AUTO CACHE STRING "AUTO (nvcc when a CUDA device answers, else the simulator), ON or OFF")
@@ -85,11 +85,10 @@ if(COURSE_USE_CUDA)
         $<$<COMPILE_LANGUAGE:CUDA>:-diag-suppress=20012 --expt-relaxed-constexpr>)
 
     function(course_target target)
-        cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS;DEFINITIONS" ${ARGN})
+        cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
         target_sources(${target} PRIVATE ${arg_SOURCES})
         target_include_directories(${target} PRIVATE ${arg_INCLUDE_DIRS} ${CMAKE_SOURCE_DIR}
             ${CMAKE_SOURCE_DIR}/chapters)
-        target_compile_definitions(${target} PRIVATE ${arg_DEFINITIONS})
         target_link_libraries(${target} PRIVATE course_cuda)
     endfunction()
     return()
@@ -111,6 +110,7 @@ endfunction()
 
 file(GLOB_RECURSE course_cuda_files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
     chapters/*.cu chapters/*.cuh common/*.cu common/*.cuh solutions/*.cuh exercises/*.cuh tests/*.cu tests/*.cuh)
+list(FILTER course_cuda_files EXCLUDE REGEX "^common/cmake/")  # a program for CMake alone
 set(course_mirrored "")
 foreach(file IN LISTS course_cuda_files)
     string(REGEX REPLACE "[.]cu$" ".cu.cpp" copy ${COURSE_MIRROR}/${file})
@@ -118,6 +118,14 @@ foreach(file IN LISTS course_cuda_files)
     list(APPEND course_mirrored ${copy})
 endforeach()
 add_custom_target(course_mirror DEPENDS ${course_mirrored})
+
+# Copies of files that are gone: an #include must not find them any longer.
+file(GLOB_RECURSE course_copies ${COURSE_MIRROR}/*)
+foreach(copy IN LISTS course_copies)
+    if(NOT copy MATCHES "/cudasim_src/elsewhere/" AND NOT copy IN_LIST course_mirrored)
+        file(REMOVE ${copy})
+    endif()
+endforeach()
 
 # Where the rewritten copy of a file or folder goes: the mirror, or for files from elsewhere a folder of the target's.
 function(course_mirror_path result path target)
@@ -133,7 +141,7 @@ function(course_mirror_path result path target)
 endfunction()
 
 function(course_target target)
-    cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS;DEFINITIONS" ${ARGN})
+    cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
     set(include_dirs "")
     set(copies "")
     foreach(dir IN LISTS arg_INCLUDE_DIRS)
@@ -143,12 +151,15 @@ function(course_target target)
         if(NOT mirror MATCHES "/cudasim_src/elsewhere/")
             continue()  # part of the tree: its mirror exists already
         endif()
-        file(GLOB headers CONFIGURE_DEPENDS ${dir}/*.cuh)
-        foreach(header IN LISTS headers arg_HEADERS)
+        set(headers ${arg_HEADERS})
+        if(NOT headers)
+            file(GLOB headers CONFIGURE_DEPENDS ${dir}/*.cuh)
+        endif()
+        foreach(header IN LISTS headers)
             get_filename_component(header ${header} ABSOLUTE)
             get_filename_component(folder ${header} DIRECTORY)
             get_filename_component(name ${header} NAME)
-            if(folder STREQUAL dir AND NOT ${mirror}/${name} IN_LIST copies)
+            if(folder STREQUAL dir)
                 course_rewrite(${header} ${mirror}/${name})
                 list(APPEND copies ${mirror}/${name})
             endif()
@@ -175,7 +186,6 @@ function(course_target target)
 
     target_include_directories(${target} BEFORE PRIVATE ${include_dirs} ${COURSE_MIRROR} ${COURSE_MIRROR}/chapters
         ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/chapters)
-    target_compile_definitions(${target} PRIVATE ${arg_DEFINITIONS})
 
     if(NOT arg_SANITIZE)
         set(arg_SANITIZE "${COURSE_SANITIZE}")

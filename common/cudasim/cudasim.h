@@ -1,6 +1,6 @@
 /// @file
-/// What tests can ask the CUDA simulator: which kernels ran, how much memory is allocated, and whether a kernel's
-/// result depends on the order of its threads. Simulator builds only (`#ifdef __CUDASIM__`).
+/// What tests can ask the CUDA simulator: which kernels ran, how much memory is allocated, and whether a
+/// kernel's result depends on the order of its threads. Simulator builds only (`#ifdef __CUDASIM__`).
 #pragma once
 #include <cuda_runtime.h>
 
@@ -55,7 +55,8 @@ struct Order {
     unsigned seed = 1;  ///< for kShuffled: the same seed gives the same order
 };
 
-/// Launches while it lives run in this order. From the environment: CUDASIM_ORDER=forward|reverse|shuffled[:seed].
+/// Launches while it lives run in this order. From the environment:
+/// CUDASIM_ORDER=forward|reverse|shuffled[:seed].
 class OrderScope {
   public:
     explicit OrderScope(Order order);
@@ -79,12 +80,12 @@ class WorkerScope {
     unsigned before_;
 };
 
-/// Runs each kernel that `work` launches three times on the same memory: in forward, reverse and shuffled order,
-/// on one worker, so that the outcome is always the same. Empty if no result depended on the order, else a
-/// text that names the kernels and the first value that differs. The program goes on with the forward result.
-/// It finds missing barriers and unprotected writes to one place. It does not find a `counter += 1` without
-/// atomicAdd, since simulated threads change places only where they wait: ThreadSanitizer does, between blocks.
-/// From the environment, for a whole program: CUDASIM_RACECHECK=1.
+/// Runs each kernel that `work` launches three times on the same memory: in forward, reverse and shuffled
+/// order, on one worker, so that the outcome is always the same. Empty if no result depended on the order,
+/// else a text that names the kernels and the first value that differs. The program goes on with the forward
+/// result. It finds missing barriers and unprotected writes to one place. It does not find a `counter += 1`
+/// without atomicAdd, since simulated threads change places only where they wait: ThreadSanitizer does,
+/// between blocks. From the environment, for a whole program: CUDASIM_RACECHECK=1.
 std::string find_races(const std::function<void()>& work);
 
 }  // namespace cudasim

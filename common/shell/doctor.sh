@@ -60,8 +60,8 @@ doctor() {
     fi
     missing=$(missing_packages build docs)
     if [ -n "$missing" ]; then
-        echo "Missing packages (./course run installs those it needs)"
-        sed 's/^/  /' <<<"$missing"
+        echo "Missing packages (the command that needs one installs it)"
+        sed 's/^\([^ ]*\) */  \1: /' <<<"$missing"
     else
         row Packages "nothing is missing"
     fi

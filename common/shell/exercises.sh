@@ -90,10 +90,15 @@ hint() {  # NN.E [n]; without n the next one
     hints=$root/solutions/${path%.*}.hints.md
     count=$(grep -c '^## Hint ' "$hints")
     given=$progress/$id.hints
-    n=${2:-$(($(cat "$given" 2>/dev/null || echo 0) + 1))}
-    [[ $n =~ ^[0-9]+$ ]] || stop 2 "'$n' is no number; exercise $id has hints 1 to $count"
+    if [ -n "${2:-}" ]; then
+        n=$2
+        [[ $n =~ ^[1-9][0-9]?$ && $n -le $count ]] || stop 2 "exercise $id has hints 1 to $count, not '$n'"
+    else
+        n=$(cat "$given" 2>/dev/null || echo 0)
+        [[ $n =~ ^[1-9][0-9]?$ ]] || n=0  # none yet, or a file that somebody else wrote
+        n=$((n + 1))
+    fi
     if [ "$n" -gt "$count" ]; then
-        [ -z "${2:-}" ] || stop 2 "exercise $id has $count hints"
         echo "Those were all $count hints. The solution is in solutions/$path"
         return
     fi

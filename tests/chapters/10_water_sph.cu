@@ -535,12 +535,35 @@ TEST_CASE("a time step over the limit ends with exit 3 and says why") {
     CHECK(slower.exit_code == 3);
 }
 
+TEST_CASE("the program's own time step holds, also where viscosity sets it") {
+    // 1000 times the scene's viscosity is honey, and the limit by viscosity 1/600 of the one by sound.
+    for (const char* viscosity : {"25", "1000"})
+        CHECK(run_program(std::string("--particles 1000 --steps 600 --draw none --viscosity ") + viscosity)
+                  .exit_code == 0);
+}
+
 TEST_CASE("bad input ends with exit 2 and one sentence") {
-    for (const char* arguments :
-         {"--particles 0", "--particles -5", "--particles 99999999999", "--particles many", "--dt -1",
-          "--dt nan", "--steps -1", "--scene soup", "--stiffness 0", "--stiffness nan", "--viscosity -1",
-          "--viscosity inf", "--draw cubes", "--equation ideal", "--unknown", "--width 1",
-          "--out /proc/nowhere", "--particles 1"}) {
+    for (const char* arguments : {"--particles 0",
+                                  "--particles -5",
+                                  "--particles 99999999999",
+                                  "--particles many",
+                                  "--dt -1",
+                                  "--dt nan",
+                                  "--steps -1",
+                                  "--scene soup",
+                                  "--stiffness 0",
+                                  "--stiffness nan",
+                                  "--viscosity -1",
+                                  "--viscosity inf",
+                                  "--draw cubes",
+                                  "--equation ideal",
+                                  "--unknown",
+                                  "--seed -1",
+                                  "--seed 18446744073709551616",
+                                  "--particles 2147483647",
+                                  "--width 1",
+                                  "--out /proc/nowhere",
+                                  "--particles 1"}) {
         const course::ProgramRun run = run_program(arguments);
         CHECK_MESSAGE(run.exit_code == 2, arguments << ": " << run.output);
         CHECK_MESSAGE(run.output.rfind("error: ", 0) == 0, arguments << ": " << run.output);

@@ -1,6 +1,7 @@
-// What the simulator costs: kernels against the same work as a plain C++ loop on as many threads, in processor time of
-// the whole process. Kernel and loop take turns, and of the times of each the lower quartile counts: other programs on
-// the machine then disturb both alike, or neither. `--check` ends with 1 when a ratio is over its limit.
+// What the simulator costs: kernels against the same work as a plain C++ loop on as many threads, in
+// processor time of the whole process. Kernel and loop take turns, and of the times of each the lower
+// quartile counts: other programs on the machine then disturb both alike, or neither. `--check` ends with 1
+// when a ratio is over its limit.
 #include <time.h>
 
 #include <algorithm>
@@ -17,7 +18,8 @@ using course::DeviceBuffer;
 
 namespace {
 
-// ---- the work, as a kernel and as a loop ------------------------------------------------------------------------
+// ---- the work, as a kernel and as a loop
+// ------------------------------------------------------------------------
 
 /// What each of a particle's neighbours adds: a term as in SPH's density sum.
 __host__ __device__ inline float neighbour_term(float4 here, float4 there) {
@@ -39,7 +41,8 @@ __global__ void neighbours_kernel(float* density, const float4* particles, int n
     const int i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i < n) density[i] = density_of(i, particles, n);
 }
-__attribute__((noinline)) void neighbours_loop(int begin, int end, float* density, const float4* particles, int n) {
+__attribute__((noinline)) void neighbours_loop(int begin, int end, float* density, const float4* particles,
+                                               int n) {
     for (int i = begin; i < end; ++i) density[i] = density_of(i, particles, n);
 }
 
@@ -96,7 +99,8 @@ __global__ void shuffles_kernel(int* out, int count) {
     out[threadIdx.x] = value;
 }
 
-// ---- measuring --------------------------------------------------------------------------------------------------
+// ---- measuring
+// --------------------------------------------------------------------------------------------------
 
 double processor_seconds() {
     timespec time;
@@ -169,13 +173,14 @@ int main(int count, char** arguments) {
         const DeviceBuffer<float4> particles(host);
         DeviceBuffer<float> density(n);
         std::vector<float> plain(n);
-        compare("neighbour loop, 96 candidates a particle", 1.3, 15,
-                [&] { neighbours_kernel<<<n / 256, 256>>>(density.data(), particles.data(), n); },
-                [&] {
-                    on_all_threads(n, [&](int begin, int end) {
-                        neighbours_loop(begin, end, plain.data(), host.data(), n);
-                    });
+        compare(
+            "neighbour loop, 96 candidates a particle", 1.3, 15,
+            [&] { neighbours_kernel<<<n / 256, 256>>>(density.data(), particles.data(), n); },
+            [&] {
+                on_all_threads(n, [&](int begin, int end) {
+                    neighbours_loop(begin, end, plain.data(), host.data(), n);
                 });
+            });
     }
     {
         const int n = 1 << 25;  // two arrays of 128 MiB: beyond any cache
@@ -183,13 +188,14 @@ int main(int count, char** arguments) {
         std::vector<float> plain_x(n, 1.0f), plain_y(n, 0.0f);
         x.upload(plain_x);
         y.upload(plain_y);
-        compare("streaming, y = a x + y beyond the cache", 2.5, 15,
-                [&] { stream_kernel<<<n / 256, 256>>>(y.data(), x.data(), 0.5f, n); },
-                [&] {
-                    on_all_threads(n, [&](int begin, int end) {
-                        stream_loop(begin, end, plain_y.data(), plain_x.data(), 0.5f);
-                    });
+        compare(
+            "streaming, y = a x + y beyond the cache", 2.5, 15,
+            [&] { stream_kernel<<<n / 256, 256>>>(y.data(), x.data(), 0.5f, n); },
+            [&] {
+                on_all_threads(n, [&](int begin, int end) {
+                    stream_loop(begin, end, plain_y.data(), plain_x.data(), 0.5f);
                 });
+            });
     }
     {
         const int n = 4096;
@@ -197,13 +203,13 @@ int main(int count, char** arguments) {
         const DeviceBuffer<float4> bodies(host);
         DeviceBuffer<float4> pull(n);
         std::vector<float4> plain(n);
-        compare("tiles and barriers, 256 threads a block", 1.5, 9,
-                [&] { tiled_kernel<256><<<n / 256, 256>>>(pull.data(), bodies.data(), n); },
-                [&] {
-                    on_all_threads(n, [&](int begin, int end) {
-                        all_pairs_loop(begin, end, plain.data(), host.data(), n);
-                    });
-                });
+        compare(
+            "tiles and barriers, 256 threads a block", 1.5, 9,
+            [&] { tiled_kernel<256><<<n / 256, 256>>>(pull.data(), bodies.data(), n); },
+            [&] {
+                on_all_threads(
+                    n, [&](int begin, int end) { all_pairs_loop(begin, end, plain.data(), host.data(), n); });
+            });
     }
     std::printf("\nfixed costs\n");
     DeviceBuffer<int> out(1024);

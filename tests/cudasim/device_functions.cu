@@ -33,7 +33,8 @@ __global__ void atomics_kernel(Totals* totals) {
     atomicXor(&totals->bits_xor, i);
     atomicInc(&totals->cycle_up, 6);
     atomicDec(&totals->cycle_down, 6);
-    if (atomicCAS(&totals->claimed, 0u, 1u) == 0u) atomicAdd(&totals->claimed, 10u);  // one thread finds the 0
+    if (atomicCAS(&totals->claimed, 0u, 1u) == 0u)
+        atomicAdd(&totals->claimed, 10u);  // one thread finds the 0
     atomicAdd(&totals->wide_sum, 1ull << 33);
     atomicAdd(&totals->float_sum, 0.5f);
     atomicAdd(&totals->double_sum, 0.25);
@@ -120,10 +121,11 @@ TEST_CASE("functions on bits") {
     bits_kernel<<<1, static_cast<unsigned>(inputs.size())>>>(results.data(), on_device.data());
     CUDA_CHECK(cudaGetLastError());
     const std::vector<Bits> got = results.download();
-    const int population[] = {0, 1, 1, 6, 32, 1}, leading[] = {32, 31, 30, 18, 0, 0}, first[] = {0, 1, 2, 1, 1, 32};
+    const int population[] = {0, 1, 1, 6, 32, 1}, leading[] = {32, 31, 30, 18, 0, 0},
+              first[] = {0, 1, 2, 1, 1, 32};
     const unsigned reversed[] = {0, 0x80000000u, 0x40000000u, 0x9c0c0000u, 0xffffffffu, 1u};
-    const int as_int[] = {0, 0x3f800000, 0x40000000, 0x4640e400, static_cast<int>(0xbf800000u),
-                          static_cast<int>(0xcf000000u)};
+    const int as_int[] = {
+        0, 0x3f800000, 0x40000000, 0x4640e400, static_cast<int>(0xbf800000u), static_cast<int>(0xcf000000u)};
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         CAPTURE(inputs[i]);
         CHECK(got[i].population == population[i]);
@@ -147,7 +149,8 @@ TEST_CASE("functions on numbers") {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const float x = inputs[i];
         CAPTURE(x);
-        // The fast functions are good to a few units in the last place (2^-23); on a GPU __expf of -9 to about 2^-19.
+        // The fast functions are good to a few units in the last place (2^-23); on a GPU __expf of -9 to
+        // about 2^-19.
         CHECK(got[i].inverse_root == doctest::Approx(1.0f / std::sqrt(x)).epsilon(1e-6));
         CHECK(got[i].quotient == doctest::Approx(1.0f / x).epsilon(1e-6));
         CHECK(got[i].exponential == doctest::Approx(std::exp(-x)).epsilon(1e-5));

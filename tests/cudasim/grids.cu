@@ -39,13 +39,23 @@ struct Shape {
     dim3 grid, block;
 };
 const Shape kShapes[] = {
-    {dim3(1), dim3(1)},          {dim3(7), dim3(31)},          {dim3(5), dim3(32)},
-    {dim3(3), dim3(33)},         {dim3(2), dim3(256)},         {dim3(2), dim3(1024)},
-    {dim3(3, 5), dim3(16, 8)},   {dim3(1, 7), dim3(1, 31)},    {dim3(2, 3, 4), dim3(4, 3, 2)},
-    {dim3(1, 1, 9), dim3(1, 1, 64)}, {dim3(4, 1, 2), dim3(33, 2, 3)}, {dim3(1, 2, 3), dim3(8, 8, 16)},
+    {dim3(1), dim3(1)},
+    {dim3(7), dim3(31)},
+    {dim3(5), dim3(32)},
+    {dim3(3), dim3(33)},
+    {dim3(2), dim3(256)},
+    {dim3(2), dim3(1024)},
+    {dim3(3, 5), dim3(16, 8)},
+    {dim3(1, 7), dim3(1, 31)},
+    {dim3(2, 3, 4), dim3(4, 3, 2)},
+    {dim3(1, 1, 9), dim3(1, 1, 64)},
+    {dim3(4, 1, 2), dim3(33, 2, 3)},
+    {dim3(1, 2, 3), dim3(8, 8, 16)},
 };
 
-unsigned volume(dim3 size) { return size.x * size.y * size.z; }
+unsigned volume(dim3 size) {
+    return size.x * size.y * size.z;
+}
 
 }  // namespace
 

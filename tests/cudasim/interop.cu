@@ -1,4 +1,5 @@
-// CUDA and OpenGL on one buffer object: what a kernel writes is in the buffer, and misuse has its error codes.
+// CUDA and OpenGL on one buffer object: what a kernel writes is in the buffer, and misuse has its error
+// codes.
 #include <GL/glew.h>
 
 #include <cuda_gl_interop.h>
@@ -109,7 +110,8 @@ TEST_CASE("interop: misuse is an error") {
     cudaGraphicsResource_t resource = nullptr;
     void* pointer = nullptr;
     std::size_t bytes = 0;
-    CHECK(cudaGraphicsGLRegisterBuffer(&resource, buffer + 1000, cudaGraphicsRegisterFlagsNone) != cudaSuccess);
+    CHECK(cudaGraphicsGLRegisterBuffer(&resource, buffer + 1000, cudaGraphicsRegisterFlagsNone) !=
+          cudaSuccess);
     CUDA_CHECK(cudaGraphicsGLRegisterBuffer(&resource, buffer, cudaGraphicsRegisterFlagsNone));
     CHECK(cudaGraphicsResourceGetMappedPointer(&pointer, &bytes, resource) != cudaSuccess);  // not mapped
     CHECK(cudaGraphicsUnmapResources(1, &resource) != cudaSuccess);                          // not mapped

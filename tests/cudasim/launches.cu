@@ -32,16 +32,22 @@ __global__ void increment_kernel(int* values) {
     values[threadIdx.x] += kTwice ? 2 : 1;
 }
 __global__ void optional_kernel(int* values, const int* extra, Offset offset) {
-    values[threadIdx.x] = (extra ? extra[threadIdx.x] : 1000) + (offset.negative ? -offset.value : offset.value);
+    values[threadIdx.x] =
+        (extra ? extra[threadIdx.x] : 1000) + (offset.negative ? -offset.value : offset.value);
 }
-__global__ void overloaded_kernel(int* values) { values[threadIdx.x] = 1; }
-__global__ void overloaded_kernel(float* values) { values[threadIdx.x] = 2.5f; }
+__global__ void overloaded_kernel(int* values) {
+    values[threadIdx.x] = 1;
+}
+__global__ void overloaded_kernel(float* values) {
+    values[threadIdx.x] = 2.5f;
+}
 __global__ void dynamic_kernel(double* values) {
     extern __shared__ __align__(16) double mine[];
     mine[threadIdx.x] = 0.5 * threadIdx.x;
     __syncthreads();
     values[threadIdx.x] = mine[blockDim.x - 1 - threadIdx.x];
 }
+// clang-format off
 __global__ void shared_forms_kernel(int* values) {
     __shared__ int first[64], second[64];
     static __shared__ float4 vectors[2][64];
@@ -57,6 +63,8 @@ __global__ void shared_forms_kernel(int* values) {
     __syncthreads();
     values[blockIdx.x * 64 + t] = first[63 - t] + second[t] + static_cast<int>(vectors[1][t].w) + single + watched[63 - t];
 }
+// clang-format on
+
 __constant__ float coefficients[4];
 __device__ int counter;
 __global__ void symbols_kernel(float* sums) {
@@ -66,26 +74,26 @@ __global__ void symbols_kernel(float* sums) {
 
 }  // namespace
 
+// clang-format off: these forms are what is tested.
 TEST_CASE("launches: plain, over several lines, with dim3, shared memory and stream") {
     DeviceBuffer<int> values(100);
     fill_kernel<<<4, 32>>>(values.data(), 100, 7);
     CUDA_CHECK(cudaGetLastError());
     course::check_equal(values.download(), std::vector<int>(100, 7), "value", "element");
     fill_kernel<<<dim3(4),  // a comment with >>> in it
-                  dim3(32, 1), 0,
-                  nullptr>>>(values.data(),
-                             100, 8);
+                  dim3(32, 1), 0, nullptr>>>(values.data(), 100, 8);
     CUDA_CHECK(cudaGetLastError());
     course::check_equal(values.download(), std::vector<int>(100, 8), "value", "element");
     const dim3 grid(4), block(32);
     cudaStream_t stream;
     CUDA_CHECK(cudaStreamCreate(&stream));
-    fill_kernel <<< grid, block, 0, stream >>> (values.data(), 100, (1 << 3) >> 1);
+    fill_kernel<<<grid, block, 0, stream>>>(values.data(), 100, (1 << 3) >> 1);
     CUDA_CHECK(cudaStreamSynchronize(stream));
     CUDA_CHECK(cudaStreamDestroy(stream));
     CUDA_CHECK(cudaGetLastError());
     course::check_equal(values.download(), std::vector<int>(100, 4), "value", "element");
 }
+// clang-format on
 
 TEST_CASE("launches: templates, given and deduced, in a namespace and in a header") {
     DeviceBuffer<int> values(std::vector<int>(64, 1));

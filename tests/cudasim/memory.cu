@@ -106,7 +106,8 @@ TEST_CASE("events take the time") {
     CUDA_CHECK(cudaEventElapsedTime(&milliseconds, start, stop));
     CHECK(milliseconds > 0);
     CHECK(milliseconds < 60e3f);
-    check_error(cudaEventElapsedTime(&milliseconds, start, never), cudaErrorInvalidResourceHandle, "never recorded");
+    check_error(cudaEventElapsedTime(&milliseconds, start, never), cudaErrorInvalidResourceHandle,
+                "never recorded");
     CUDA_CHECK(cudaEventDestroy(start));
     CUDA_CHECK(cudaEventDestroy(stop));
     CUDA_CHECK(cudaEventDestroy(never));
@@ -162,13 +163,15 @@ TEST_CASE("launch configurations that no device takes") {
 TEST_CASE("memory: copies in the wrong direction") {
     DeviceBuffer<char> device(100);
     std::vector<char> host(100);
-    const auto copy = [](void* to, const void* from, cudaMemcpyKind kind) { return cudaMemcpy(to, from, 100, kind); };
+    const auto copy = [](void* to, const void* from, cudaMemcpyKind kind) {
+        return cudaMemcpy(to, from, 100, kind);
+    };
     for (const cudaMemcpyKind kind : {cudaMemcpyHostToHost, cudaMemcpyDeviceToHost, cudaMemcpyDeviceToDevice})
         check_error(copy(device.data(), host.data(), kind), cudaErrorInvalidValue, "host to device");
     for (const cudaMemcpyKind kind : {cudaMemcpyHostToHost, cudaMemcpyHostToDevice, cudaMemcpyDeviceToDevice})
         check_error(copy(host.data(), device.data(), kind), cudaErrorInvalidValue, "device to host");
-    check_error(copy(device.data(), host.data(), static_cast<cudaMemcpyKind>(7)), cudaErrorInvalidMemcpyDirection,
-                "no kind");
+    check_error(copy(device.data(), host.data(), static_cast<cudaMemcpyKind>(7)),
+                cudaErrorInvalidMemcpyDirection, "no kind");
     check_error(cudaMemset(host.data(), 0, 100), cudaErrorInvalidValue, "cudaMemset of host memory");
     check_error(cudaFree(host.data()), cudaErrorInvalidValue, "cudaFree of host memory");
     check_error(cudaFreeHost(device.data()), cudaErrorInvalidValue, "cudaFreeHost of device memory");

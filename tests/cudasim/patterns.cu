@@ -23,10 +23,12 @@ std::vector<int> test_data(int n) {
     return values;
 }
 
-int blocks_for(int n, int block) { return (n + block - 1) / block; }
+int blocks_for(int n, int block) {
+    return (n + block - 1) / block;
+}
 
-/// Sum of each block's values, in dynamic shared memory. Halves what is left until one value is; works for any
-/// block size.
+/// Sum of each block's values, in dynamic shared memory. Halves what is left until one value is; works for
+/// any block size.
 __global__ void block_sums_kernel(int* sums, const int* values, int n) {
     extern __shared__ int partial[];
     const int i = blockIdx.x * blockDim.x + threadIdx.x;

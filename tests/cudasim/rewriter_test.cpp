@@ -18,11 +18,17 @@ std::string rewritten(const std::string& source) {
     return text.substr(first.size());
 }
 
-void check_unchanged(const std::string& source) { CHECK(rewritten(source) == source); }
+void check_unchanged(const std::string& source) {
+    CHECK(rewritten(source) == source);
+}
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
-auto newlines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+auto newlines(const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+}
 
 }  // namespace
 
@@ -37,7 +43,8 @@ TEST_CASE("rewriter: launches") {
           "if (x) CUDASIM_LAUNCH(k)(1, 2)(); else CUDASIM_LAUNCH(j)(3, 4)();");
     CHECK(rewritten("(up ? a : b)<<<1, 2>>>();") == "CUDASIM_LAUNCH((up ? a : b))(1, 2)();");
     CHECK(rewritten("kernels[i]<<<1, 2>>>();") == "CUDASIM_LAUNCH(kernels[i])(1, 2)();");
-    CHECK(rewritten("k<<<(n + 255) >> 8, f(a >> b)>>>();") == "CUDASIM_LAUNCH(k)((n + 255) >> 8, f(a >> b))();");
+    CHECK(rewritten("k<<<(n + 255) >> 8, f(a >> b)>>>();") ==
+          "CUDASIM_LAUNCH(k)((n + 255) >> 8, f(a >> b))();");
     CHECK(rewritten("k<<<1, /* >>> */ 2>>>();") == "CUDASIM_LAUNCH(k)(1, /* >>> */ 2)();");
     CHECK(rewritten("k<<<1, \">>>\"[0]>>>();") == "CUDASIM_LAUNCH(k)(1, \">>>\"[0])();");
     CHECK(rewritten("#define GO(k) k<<<1, 2>>>()\n") == "#define GO(k) CUDASIM_LAUNCH(k)(1, 2)()\n");
@@ -68,14 +75,17 @@ TEST_CASE("rewriter: code after a literal is rewritten again") {
 }
 
 TEST_CASE("rewriter: shared memory") {
-    const auto shared = [](const std::string& name, const std::string& declaration, const std::string& references) {
-        return "CUDASIM_SHARED_BEGIN(" + name + ") " + declaration + "; CUDASIM_SHARED_END(" + name + ")" + references;
+    const auto shared = [](const std::string& name, const std::string& declaration,
+                           const std::string& references) {
+        return "CUDASIM_SHARED_BEGIN(" + name + ") " + declaration + "; CUDASIM_SHARED_END(" + name + ")" +
+               references;
     };
     const auto reference = [](const std::string& memory, const std::string& name) {
         return " [[maybe_unused]] auto& " + name + " = cudasim_memory_" + memory + "." + name + ";";
     };
     CHECK(rewritten("__shared__ float a[256];") == shared("a", "float a[256]", reference("a", "a")));
-    CHECK(rewritten("__shared__ std::array<int, 3> a;") == shared("a", "std::array<int, 3> a", reference("a", "a")));
+    CHECK(rewritten("__shared__ std::array<int, 3> a;") ==
+          shared("a", "std::array<int, 3> a", reference("a", "a")));
     CHECK(rewritten("__shared__ int a[N < 3 ? 1 : 2][M], b;") ==
           shared("a", "int a[N < 3 ? 1 : 2][M], b", reference("a", "a") + reference("a", "b")));
     CHECK(rewritten("__shared__ alignas(16) float a[4];") ==
@@ -89,7 +99,8 @@ TEST_CASE("rewriter: shared memory") {
 
 TEST_CASE("rewriter: line numbers stay") {
     const std::string source =
-        "a\nk<int,\n  3>\n<<<\n1,\n2\n>>>\n(x);\n__shared__\nint\na;\nextern\n__shared__\nint b[\n];\n/*\n*/\nlast\n";
+        "a\nk<int,\n  3>\n<<<\n1,\n2\n>>>\n(x);\n__shared__\nint\na;\nextern\n__shared__\nint "
+        "b[\n];\n/*\n*/\nlast\n";
     const std::string text = rewritten(source);
     CHECK(newlines(text) == newlines(source));
     CHECK(newlines(text.substr(text.find("last"))) == 1);
@@ -119,7 +130,8 @@ TEST_CASE("rewriter: neighbours of a file are included from where it is") {
     std::filesystem::create_directories(folder);
     for (const char* name : {"plain.h", "kernels.cuh"}) std::ofstream(folder / name) << "\n";
     const std::string path = (folder / "file.cu").string();
-    const std::string source = "#include \"plain.h\"\n# include \"kernels.cuh\"\n#include \"missing.h\"\n#include <plain.h>\n";
+    const std::string source =
+        "#include \"plain.h\"\n# include \"kernels.cuh\"\n#include \"missing.h\"\n#include <plain.h>\n";
     const std::string text = cudasim::rewrite(source, path);
     CHECK(contains(text, "#include \"" + (folder / "plain.h").string() + "\"\n"));
     CHECK(contains(text, "# include \"kernels.cuh\"\n"));  // its rewritten copy lies beside this file's

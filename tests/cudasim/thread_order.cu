@@ -27,7 +27,9 @@ __global__ void reverse_kernel(int* values) {
 }
 
 /// All threads write to one place; who is last wins.
-__global__ void last_writer_kernel(int* value) { *value = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); }
+__global__ void last_writer_kernel(int* value) {
+    *value = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+}
 
 /// Shuffled sums between barriers: the right way to do it.
 __global__ void clean_sum_kernel(int* sum, const int* values) {
@@ -82,7 +84,8 @@ TEST_CASE("each thread runs once in a shuffled order, whatever the sizes") {
 TEST_CASE("a missing barrier is found and named") {
     const std::vector<int> values(64, 5);
     DeviceBuffer<int> on_device(values);
-    const std::string found = cudasim::find_races([&] { reverse_kernel<false><<<1, 64>>>(on_device.data()); });
+    const std::string found =
+        cudasim::find_races([&] { reverse_kernel<false><<<1, 64>>>(on_device.data()); });
     CUDA_CHECK(cudaGetLastError());
     INFO(found);
     CHECK(found.find("kernel reverse_kernel<false> (launched at ") != std::string::npos);

@@ -20,10 +20,9 @@ struct Shuffles {
 
 __global__ void shuffle_kernel(Shuffles* results, int amount, int width) {
     const int mine = 100 + static_cast<int>(threadIdx.x);
-    results[threadIdx.x] = {__shfl_sync(kAllLanes, mine, amount, width),
-                            __shfl_up_sync(kAllLanes, mine, amount, width),
-                            __shfl_down_sync(kAllLanes, mine, amount, width),
-                            __shfl_xor_sync(kAllLanes, mine, amount, width)};
+    results[threadIdx.x] = {
+        __shfl_sync(kAllLanes, mine, amount, width), __shfl_up_sync(kAllLanes, mine, amount, width),
+        __shfl_down_sync(kAllLanes, mine, amount, width), __shfl_xor_sync(kAllLanes, mine, amount, width)};
 }
 
 __global__ void wide_types_kernel(double* reversed, unsigned long long* rotated) {
@@ -157,7 +156,8 @@ TEST_CASE("two groups of a warp go different ways") {
     two_groups_kernel<<<1, 32>>>(results.data());
     CUDA_CHECK(cudaGetLastError());
     std::vector<int> expected(32);
-    const auto combine = [](std::vector<int>& values, int begin, const std::function<int(int, int)>& operation) {
+    const auto combine = [](std::vector<int>& values, int begin,
+                            const std::function<int(int, int)>& operation) {
         for (int offset = 8; offset > 0; offset /= 2) {
             const std::vector<int> before = values;
             for (int i = begin; i < begin + 16; ++i) values[i] = operation(before[i], before[i ^ offset]);

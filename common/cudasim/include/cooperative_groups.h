@@ -1,1 +1,2 @@
-#error "the CUDA simulator has no cooperative groups: use __syncthreads(), __syncwarp(mask) and the __shfl_..._sync functions"
+#error \
+    "the CUDA simulator has no cooperative groups: use __syncthreads(), __syncwarp(mask) and the __shfl_..._sync functions"

@@ -1,7 +1,7 @@
 /// @file
-/// CUDA and OpenGL on the same buffer. Mapping a resource maps the real buffer object into memory, where simulated
-/// kernels write to it. The calling thread must have a current context whose functions GLEW has loaded.
-/// Codes are those that CUDA's documentation names; a line on stderr says more.
+/// CUDA and OpenGL on the same buffer. Mapping a resource maps the real buffer object into memory, where
+/// simulated kernels write to it. The calling thread must have a current context whose functions GLEW has
+/// loaded. Codes are those that CUDA's documentation names; a line on stderr says more.
 #pragma once
 #include <GL/glew.h>
 #include <cuda_runtime.h>
@@ -29,7 +29,9 @@ using cudaGraphicsResource_t = cudaGraphicsResource*;
 
 namespace cudasim {
 
-inline bool has_gl_context() { return __glewMapBufferRange && glGetString(GL_VERSION); }
+inline bool has_gl_context() {
+    return __glewMapBufferRange && glGetString(GL_VERSION);
+}
 
 /// Binds a buffer for a moment, where it disturbs nobody.
 class BoundBuffer {
@@ -59,7 +61,8 @@ class BoundBuffer {
 
 inline cudaError_t map_resource(cudaGraphicsResource& resource) {
     constexpr const char* kCall = "cudaGraphicsMapResources";
-    if (!has_gl_context()) return refuse_graphics(cudaErrorInvalidGraphicsContext, kCall, "no OpenGL context");
+    if (!has_gl_context())
+        return refuse_graphics(cudaErrorInvalidGraphicsContext, kCall, "no OpenGL context");
     if (resource.mapped) return refuse_graphics(cudaErrorUnknown, kCall, "the resource is mapped already");
     const BoundBuffer bound(resource.buffer);
     // It may have got another size since it was registered.
@@ -72,7 +75,8 @@ inline cudaError_t map_resource(cudaGraphicsResource& resource) {
 
 inline cudaError_t unmap_resource(cudaGraphicsResource& resource) {
     constexpr const char* kCall = "cudaGraphicsUnmapResources";
-    if (!has_gl_context()) return refuse_graphics(cudaErrorInvalidGraphicsContext, kCall, "no OpenGL context");
+    if (!has_gl_context())
+        return refuse_graphics(cudaErrorInvalidGraphicsContext, kCall, "no OpenGL context");
     if (!resource.mapped) return refuse_graphics(cudaErrorUnknown, kCall, "the resource is not mapped");
     remove_graphics_memory(resource.mapped);
     resource.mapped = nullptr;
@@ -83,13 +87,16 @@ inline cudaError_t unmap_resource(cudaGraphicsResource& resource) {
 
 }  // namespace cudasim
 
-inline cudaError_t cudaGraphicsGLRegisterBuffer(cudaGraphicsResource** resource, GLuint buffer, unsigned flags) {
+inline cudaError_t cudaGraphicsGLRegisterBuffer(cudaGraphicsResource** resource, GLuint buffer,
+                                                unsigned flags) {
     constexpr const char* kCall = "cudaGraphicsGLRegisterBuffer";
-    if (!resource) return cudasim::refuse_graphics(cudaErrorInvalidValue, kCall, "nowhere to put the resource");
+    if (!resource)
+        return cudasim::refuse_graphics(cudaErrorInvalidValue, kCall, "nowhere to put the resource");
     *resource = nullptr;
     if (!cudasim::has_gl_context())
-        return cudasim::refuse_graphics(cudaErrorInvalidGraphicsContext, kCall,
-                                        "the calling thread has no OpenGL context, or glewInit() was not called");
+        return cudasim::refuse_graphics(
+            cudaErrorInvalidGraphicsContext, kCall,
+            "the calling thread has no OpenGL context, or glewInit() was not called");
     if (!glIsBuffer(buffer))
         return cudasim::refuse_graphics(cudaErrorInvalidValue, kCall, "there is no such OpenGL buffer");
     if (flags > cudaGraphicsRegisterFlagsWriteDiscard)
@@ -105,7 +112,8 @@ inline cudaError_t cudaGraphicsResourceSetMapFlags(cudaGraphicsResource_t resour
     return cudaSuccess;
 }
 
-inline cudaError_t cudaGraphicsMapResources(int count, cudaGraphicsResource_t* resources, cudaStream_t = nullptr) {
+inline cudaError_t cudaGraphicsMapResources(int count, cudaGraphicsResource_t* resources,
+                                            cudaStream_t = nullptr) {
     for (int i = 0; i < count; ++i) {
         if (!resources[i]) return cudasim::set_last_error(cudaErrorInvalidResourceHandle);
         if (const cudaError_t error = cudasim::map_resource(*resources[i])) return error;
@@ -113,7 +121,8 @@ inline cudaError_t cudaGraphicsMapResources(int count, cudaGraphicsResource_t* r
     return cudaSuccess;
 }
 
-inline cudaError_t cudaGraphicsUnmapResources(int count, cudaGraphicsResource_t* resources, cudaStream_t = nullptr) {
+inline cudaError_t cudaGraphicsUnmapResources(int count, cudaGraphicsResource_t* resources,
+                                              cudaStream_t = nullptr) {
     for (int i = 0; i < count; ++i) {
         if (!resources[i]) return cudasim::set_last_error(cudaErrorInvalidResourceHandle);
         if (const cudaError_t error = cudasim::unmap_resource(*resources[i])) return error;
@@ -126,7 +135,8 @@ inline cudaError_t cudaGraphicsResourceGetMappedPointer(void** pointer, std::siz
                                                         cudaGraphicsResource_t resource) {
     constexpr const char* kCall = "cudaGraphicsResourceGetMappedPointer";
     if (!resource) return cudasim::set_last_error(cudaErrorInvalidResourceHandle);
-    if (!resource->mapped) return cudasim::refuse_graphics(cudaErrorUnknown, kCall, "the resource is not mapped");
+    if (!resource->mapped)
+        return cudasim::refuse_graphics(cudaErrorUnknown, kCall, "the resource is not mapped");
     if (pointer) *pointer = resource->mapped;
     if (bytes) *bytes = resource->bytes;
     return cudaSuccess;

@@ -1,7 +1,7 @@
 /// @file
-/// The CUDA simulator's stand-in for the CUDA Toolkit's header of this name: CUDA C++ for a plain C++17 compiler.
-/// Real names, real return codes, for the part of CUDA that the course uses; anything else does not compile.
-/// How it works: common/cudasim/README.md.
+/// The CUDA simulator's stand-in for the CUDA Toolkit's header of this name: CUDA C++ for a plain C++17
+/// compiler. Real names, real return codes, for the part of CUDA that the course uses; anything else does not
+/// compile. How it works: common/cudasim/README.md.
 #pragma once
 
 #define __CUDASIM__ 1
@@ -29,6 +29,7 @@
 #include "cudasim/bits.h"
 #include "cudasim/block_sync.h"
 #include "cudasim/fast_math.h"
+#include "cudasim/min_max.h"
 #include "cudasim/shared_memory.h"
 #include "cudasim/warp.h"
 

@@ -27,13 +27,16 @@ std::size_t raw_string_length(const std::string& source, std::size_t at, std::si
 
 std::size_t line_comment_length(const std::string& source, std::size_t at) {
     std::size_t end = source.find('\n', at);
-    while (end != kEnd && source[end - 1] == '\\') end = source.find('\n', end + 1);  // it goes on in the next line
+    while (end != kEnd && source[end - 1] == '\\')
+        end = source.find('\n', end + 1);  // it goes on in the next line
     return length_until(source, at, end);
 }
 
 }  // namespace
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
 
 std::size_t word_length(const std::string& source, std::size_t at) {
     std::size_t end = at;
@@ -55,7 +58,8 @@ std::size_t literal_length(const std::string& source, std::size_t at) {
     if (quote != '"' && quote != '\'') return 0;
     if (quote == '\'' && inside_word) return 0;  // 1'000'000
     std::size_t end = at + 1;
-    while (end < source.size() && source[end] != quote && source[end] != '\n') end += source[end] == '\\' ? 2 : 1;
+    while (end < source.size() && source[end] != quote && source[end] != '\n')
+        end += source[end] == '\\' ? 2 : 1;
     return length_until(source, at, end + 1);
 }
 

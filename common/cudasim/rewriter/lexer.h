@@ -16,7 +16,8 @@ bool is_word(char c);
 /// Length of the word (identifier, keyword, number) that begins at `at`; 0 if none does.
 std::size_t word_length(const std::string& source, std::size_t at);
 
-/// Position of the first `wanted` at or after `at` that is not inside brackets or literals; npos if there is none.
+/// Position of the first `wanted` at or after `at` that is not inside brackets or literals; npos if there is
+/// none.
 std::size_t find_outside_brackets(const std::string& source, std::size_t at, const std::string& wanted);
 
 /// The same text with each literal and comment replaced by blanks; newlines stay.

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::size_t kNone = std::string::npos;
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
 
 std::string newlines_of(const std::string& text) {
     return std::string(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), '\n');
@@ -47,8 +49,8 @@ class Rewriter {
         at_ += length;
     }
 
-    /// #include "beside.h": the copy lies in another folder, so the file's own neighbours get their full path.
-    /// CUDA headers (.cuh) lie beside the copy, rewritten.
+    /// #include "beside.h": the copy lies in another folder, so the file's own neighbours get their full
+    /// path. CUDA headers (.cuh) lie beside the copy, rewritten.
     bool directive() {
         std::size_t at = source_.find_first_not_of(" \t", at_);
         if (at == kNone || source_[at] != '#') return false;
@@ -87,7 +89,8 @@ class Rewriter {
         at_ = close + 3;
     }
 
-    /// Where the kernel's name begins that ends at `end` of the output: name, ns::name, name<arguments>, (a ? b : c).
+    /// Where the kernel's name begins that ends at `end` of the output: name, ns::name, name<arguments>, (a ?
+    /// b : c).
     std::size_t kernel_begin(std::size_t end) const {
         std::size_t begin = end;
         if (begin > 0 && out_[begin - 1] == '>') begin = opening(begin, '<', '>');
@@ -126,14 +129,16 @@ class Rewriter {
         const std::string declaration = qualifiers + source_.substr(after_word, semicolon - after_word);
         if (dynamic) {
             const auto array = dynamic_array(declaration);
-            if (!array) return reject("extern __shared__ needs the form: extern __shared__ type name[];", length);
+            if (!array)
+                return reject("extern __shared__ needs the form: extern __shared__ type name[];", length);
             out_ += array->type + "* const " + array->name + " = static_cast<" + array->type +
                     "*>(::cudasim::dynamic_shared());" + newlines_of(declaration);
         } else {
             const auto names = declared_names(declaration);
             if (!names) return reject("__shared__ needs the form: __shared__ type name[size];", length);
             const std::string& first = names->front();
-            out_ += "CUDASIM_SHARED_BEGIN(" + first + ")" + declaration + "; CUDASIM_SHARED_END(" + first + ")";
+            out_ +=
+                "CUDASIM_SHARED_BEGIN(" + first + ")" + declaration + "; CUDASIM_SHARED_END(" + first + ")";
             for (const std::string& name : *names)
                 out_ += " [[maybe_unused]] auto& " + name + " = cudasim_memory_" + first + "." + name + ";";
         }
@@ -165,6 +170,8 @@ class Rewriter {
 
 }  // namespace
 
-std::string rewrite(const std::string& source, const std::string& path) { return Rewriter(source, path).run(); }
+std::string rewrite(const std::string& source, const std::string& path) {
+    return Rewriter(source, path).run();
+}
 
 }  // namespace cudasim

@@ -67,6 +67,11 @@ const Allocation* Allocations::find(const void* address) const {
     return byte <= candidate.end() ? &candidate : nullptr;
 }
 
+const Allocation* Allocations::holder_of(const void* address) const {
+    const Allocation* found = find(address);
+    return found && address < found->end() ? found : nullptr;
+}
+
 const Allocation* Allocations::find_begin(const void* address) const {
     const auto found = by_address_.find(static_cast<const char*>(address));
     return found == by_address_.end() ? nullptr : &found->second;
@@ -108,8 +113,12 @@ void free_allocation(const Allocation& allocation) {
 #endif
 }
 
-AccessTo::AccessTo(const Allocation* allocation) : allocation_(allocation) { set_host_access(allocation_, true); }
-AccessTo::~AccessTo() { set_host_access(allocation_, false); }
+AccessTo::AccessTo(const Allocation* allocation) : allocation_(allocation) {
+    set_host_access(allocation_, true);
+}
+AccessTo::~AccessTo() {
+    set_host_access(allocation_, false);
+}
 
 HostAccess::HostAccess() {
     for (const auto& entry : Allocations::all().by_address()) set_host_access(&entry.second, true);

@@ -33,8 +33,10 @@ class Allocations {
     void add_foreign(void* begin, std::size_t bytes, MemoryKind kind);
     void remove(const Allocation& allocation);
 
-    /// The one that `address` lies in; an address just behind the end counts. nullptr if there is none.
+    /// The one that `address` lies in or just behind, as the end of a range does. nullptr if there is none.
     const Allocation* find(const void* address) const;
+    /// The one that holds a byte at `address`.
+    const Allocation* holder_of(const void* address) const;
     /// The one that begins there.
     const Allocation* find_begin(const void* address) const;
     /// The one that ends less than `distance` bytes before `address`.

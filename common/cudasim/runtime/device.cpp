@@ -2,9 +2,9 @@
 #include <cuda_runtime.h>
 
 #include "runtime/allocations.h"
+#include "runtime/errors.h"
 #include "runtime/host_call.h"
 #include "runtime/host_memory.h"
-#include "runtime/launch_errors.h"
 #include "runtime/limits.h"
 #include "runtime/settings.h"
 
@@ -22,7 +22,9 @@ cudaError_t cudaGetDevice(int* device) {
     return cudaSuccess;
 }
 
-cudaError_t cudaSetDevice(int device) { return device == 0 ? cudaSuccess : set_last_error(cudaErrorInvalidDevice); }
+cudaError_t cudaSetDevice(int device) {
+    return device == 0 ? cudaSuccess : set_last_error(cudaErrorInvalidDevice);
+}
 
 cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device) {
     if (!properties) return set_last_error(cudaErrorInvalidValue);
@@ -61,7 +63,9 @@ cudaError_t cudaDriverGetVersion(int* version) {
     return cudaSuccess;
 }
 
-cudaError_t cudaRuntimeGetVersion(int* version) { return cudaDriverGetVersion(version); }
+cudaError_t cudaRuntimeGetVersion(int* version) {
+    return cudaDriverGetVersion(version);
+}
 
 cudaError_t cudaDeviceSynchronize() {
     const HostCall call("cudaDeviceSynchronize");

@@ -1,7 +1,7 @@
 // Error codes and their texts, and the error that waits to be asked for.
 #include <cuda_runtime.h>
 
-#include "runtime/launch_errors.h"
+#include "runtime/errors.h"
 #include "runtime/report.h"
 
 namespace {
@@ -47,15 +47,17 @@ unsigned unseen_launches = 0;
 cudasim::LaunchRequest first_unseen{};
 cudaError_t first_unseen_error = cudaSuccess;
 
-void see_launch_errors() { unseen_launches = 0; }
+void see_launch_errors() {
+    unseen_launches = 0;
+}
 
 __attribute__((destructor)) void report_unseen_launches() {
     if (unseen_launches == 0) return;
     const std::string more =
         unseen_launches > 1 ? "\nand of " + std::to_string(unseen_launches - 1) + " more launches" : "";
     cudasim::say("nobody asked for the error of " + cudasim::text_of(first_unseen) + ": " +
-                 cudaGetErrorName(first_unseen_error) + " (" + cudaGetErrorString(first_unseen_error) + ")" + more +
-                 "\na launch returns nothing: call cudaGetLastError() after it");
+                 cudaGetErrorName(first_unseen_error) + " (" + cudaGetErrorString(first_unseen_error) + ")" +
+                 more + "\na launch returns nothing: call cudaGetLastError() after it");
 }
 
 }  // namespace
@@ -80,6 +82,11 @@ cudaError_t take_kernel_fault() {
     if (fault != cudaSuccess) see_launch_errors();
     kernel_fault = cudaSuccess;
     return fault;
+}
+
+cudaError_t refuse(cudaError_t error, const char* call, const char* file, int line, const std::string& why) {
+    say(std::string(call) + " at " + text_of(file, line) + ": " + why);
+    return set_last_error(error);
 }
 
 }  // namespace cudasim

@@ -29,21 +29,23 @@ std::string reason_of(int signal, const void* address) {
     char text[64];
     std::snprintf(text, sizeof text, "it touched memory at %p, which it may not", address);
     std::string reason = text;
-    if (const Allocation* near = Allocations::all().find_before(address, 2 * page_bytes()))
+    const Allocation* near = Allocations::all().find_before(address, 2 * page_bytes());
+    if (near && address >= near->end())
         reason += ", " + std::to_string(static_cast<const char*>(address) - near->end()) +
                   " bytes behind the end of " + text_of(*near);
     if (reinterpret_cast<std::uintptr_t>(address) < page_bytes()) reason += ": a null pointer";
     return reason;
 }
 
-// Not all it calls is allowed in a signal handler, strictly. The process is about to end: what counts is that the
-// message comes out nearly always.
+// Not all it calls is allowed in a signal handler, strictly. The process is about to end: what counts is that
+// the message comes out nearly always.
 void report_fault(int signal, siginfo_t* info, void*) {
     for (int i = 0; i < kCount; ++i) sigaction(kSignals[i], &previous[i], nullptr);
     if (running_launch) {
         const bool thread_known = signal == SIGABRT || Worker::mine().running_thread_waited();
         say("crash in " + (thread_known ? running_thread_text() : running_block_text()) + "\n" +
-            reason_of(signal, info->si_addr) + (thread_known ? "" : "\nthe asan preset names the thread and the line"));
+            reason_of(signal, info->si_addr) +
+            (thread_known ? "" : "\nthe asan preset names the thread and the line"));
     }
     if (signal == SIGABRT) raise(signal);  // the others happen again when the handler returns
 }
@@ -71,7 +73,7 @@ AlternateStack::~AlternateStack() {
 void report_faults() {
     static thread_local const AlternateStack stack_of_host_thread;
     static const bool installed = [] {
-        struct sigaction mine{};
+        struct sigaction mine {};
         mine.sa_sigaction = report_fault;
         mine.sa_flags = SA_SIGINFO | SA_ONSTACK;
         for (int i = 0; i < kCount; ++i) sigaction(kSignals[i], &mine, &previous[i]);

@@ -17,8 +17,8 @@ class AlternateStack {
     std::unique_ptr<char[]> stack_;  ///< nullptr: the thread had one already
 };
 
-/// From now on a crash of a kernel is reported before the process ends as it would have. To be called by each host
-/// thread before it runs kernels; only the first call costs anything.
+/// From now on a crash of a kernel is reported before the process ends as it would have. To be called by each
+/// host thread before it runs kernels; only the first call costs anything.
 void report_faults();
 
 }  // namespace cudasim

@@ -1,6 +1,8 @@
 #include "runtime/fiber.h"
 
-#include <new>
+#include <cstdlib>
+
+#include "runtime/report.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/common_interface_defs.h>
@@ -23,7 +25,11 @@ constexpr std::size_t kStackPages = 33;
 
 Fiber::Fiber(void (*main)(boost::context::detail::transfer_t), unsigned number)
     : stack(kStackPages * page_bytes(), GuardedPages::Guard::kBelow) {
-    if (!stack.begin()) throw std::bad_alloc();
+    if (!stack.begin()) {
+        say("no memory for the stack of a simulated thread: take fewer workers (CUDASIM_THREADS) or smaller "
+            "blocks");
+        std::abort();
+    }
     // Stacks start at different places in their first page, again to spread over the sets of the cache.
     const std::size_t offset = number * 320 % page_bytes();
     context = boost::context::detail::make_fcontext(stack.end() - offset, stack.size() - offset, main);

@@ -1,7 +1,8 @@
 /// @file
 /// A fiber: a stack of its own on which a kernel's thread can wait while others run on other stacks.
-/// Boost.Context's two functions change stacks. (Its class `fiber` is built on them, hands over an object at each
-/// switch, and wants one function to run; here a fiber runs one thread after the other and is never done.)
+/// Boost.Context's two functions change stacks. (Its class `fiber` is built on them, hands over an object at
+/// each switch, and wants one function to run; here a fiber runs one thread after the other and is never
+/// done.)
 #pragma once
 #include <cuda_runtime.h>
 

@@ -1,4 +1,5 @@
-// What cuda_gl_interop.h needs of the runtime. The OpenGL calls are all there: the runtime does not link OpenGL.
+// What cuda_gl_interop.h needs of the runtime. The OpenGL calls are all there: the runtime does not link
+// OpenGL.
 #include "cudasim/graphics_memory.h"
 
 #include "runtime/allocations.h"

@@ -28,7 +28,9 @@ GuardedPages::GuardedPages(std::size_t bytes, Guard guard) : guard_(guard) {
     size_ = size;
 }
 
-GuardedPages::GuardedPages(GuardedPages&& other) noexcept { *this = std::move(other); }
+GuardedPages::GuardedPages(GuardedPages&& other) noexcept {
+    *this = std::move(other);
+}
 
 GuardedPages& GuardedPages::operator=(GuardedPages&& other) noexcept {
     std::swap(begin_, other.begin_);

@@ -17,7 +17,8 @@ std::recursive_mutex& runtime_mutex() {
 
 HostCall::HostCall(const char* function) {
     if (running_launch) {
-        say(std::string(function) + " was called by a kernel; only host code may\nin " + running_thread_text());
+        say(std::string(function) + " was called by a kernel; only host code may\nin " +
+            running_thread_text());
         std::abort();
     }
     settings();  // a wrong setting ends the program at its first call, not somewhere later

@@ -5,7 +5,8 @@
 
 namespace cudasim {
 
-/// One host thread at a time, and no kernel: a kernel that calls a host function ends the program with a message.
+/// One host thread at a time, and no kernel: a kernel that calls a host function ends the program with a
+/// message.
 class HostCall {
   public:
     explicit HostCall(const char* function);

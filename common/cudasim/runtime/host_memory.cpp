@@ -11,7 +11,8 @@
 namespace cudasim {
 namespace {
 
-/// The number behind `word` in a text file (the first number if `word` is empty); `fallback` if there is none.
+/// The number behind `word` in a text file (the first number if `word` is empty); `fallback` if there is
+/// none.
 std::size_t number_in(const char* path, const char* word, std::size_t fallback) {
     std::FILE* file = std::fopen(path, "r");
     if (!file) return fallback;
@@ -30,11 +31,14 @@ std::size_t number_in(const char* path, const char* word, std::size_t fallback) 
 }
 
 std::size_t memory_of_machine() {
-    return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 /// What a container may use (control groups, version 2): often less than the machine has.
-std::size_t limit_of_container() { return number_in("/sys/fs/cgroup/memory.max", "", SIZE_MAX); }
+std::size_t limit_of_container() {
+    return number_in("/sys/fs/cgroup/memory.max", "", SIZE_MAX);
+}
 
 std::size_t used_by_container() {
     const std::size_t used = number_in("/sys/fs/cgroup/memory.current", "", 0);

@@ -1,9 +1,9 @@
 // What happens at `kernel<<<grid, block, shared>>>(arguments)`.
 #include "cudasim/host_access.h"
 #include "runtime/allocations.h"
+#include "runtime/errors.h"
 #include "runtime/faults.h"
 #include "runtime/host_call.h"
-#include "runtime/launch_errors.h"
 #include "runtime/limits.h"
 #include "runtime/race_check.h"
 #include "runtime/recording.h"
@@ -54,7 +54,8 @@ void run_grid(const LaunchRequest& request) {
     if (!why.empty()) return refuse(request, cudaErrorInvalidConfiguration, why);
     if (request.shared_bytes > kSharedLimit)  // CUDA has another code for this
         return refuse(request, cudaErrorInvalidValue,
-                      std::to_string(request.shared_bytes) + " bytes of dynamic shared memory, but the limit is " +
+                      std::to_string(request.shared_bytes) +
+                          " bytes of dynamic shared memory, but the limit is " +
                           std::to_string(kSharedLimit));
     note_launch(request);
     const HostAccess for_the_kernel;

@@ -1,6 +1,6 @@
 /// @file
-/// The limits that all CUDA devices have had since compute capability 3.0 (CUDA C++ Programming Guide, table of
-/// technical specifications per compute capability).
+/// The limits that all CUDA devices have had since compute capability 3.0 (CUDA C++ Programming Guide, table
+/// of technical specifications per compute capability).
 #pragma once
 #include <cuda_runtime.h>
 

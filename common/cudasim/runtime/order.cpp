@@ -24,7 +24,8 @@ std::uint64_t block_at(std::uint64_t turn, std::uint64_t blocks, Order order) {
     return static_cast<std::uint64_t>((start + static_cast<unsigned __int128>(turn) * step) % blocks);
 }
 
-void order_threads(std::vector<unsigned>& threads_by_turn, unsigned threads, Order order, std::uint64_t block) {
+void order_threads(std::vector<unsigned>& threads_by_turn, unsigned threads, Order order,
+                   std::uint64_t block) {
     threads_by_turn.resize(threads);
     std::iota(threads_by_turn.begin(), threads_by_turn.end(), 0u);
     if (order.kind == Order::kReverse) std::reverse(threads_by_turn.begin(), threads_by_turn.end());

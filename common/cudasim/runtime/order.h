@@ -26,6 +26,7 @@ class Shuffler {
 std::uint64_t block_at(std::uint64_t turn, std::uint64_t blocks, Order order);
 
 /// Thread numbers by turn for a block of `threads`.
-void order_threads(std::vector<unsigned>& threads_by_turn, unsigned threads, Order order, std::uint64_t block);
+void order_threads(std::vector<unsigned>& threads_by_turn, unsigned threads, Order order,
+                   std::uint64_t block);
 
 }  // namespace cudasim

@@ -11,7 +11,8 @@ namespace cudasim {
 inline void fill_with_poison(void* begin, std::size_t bytes) {
     const std::size_t words = bytes / sizeof kPoison;
     std::fill_n(static_cast<unsigned*>(begin), words, kPoison);
-    std::memcpy(static_cast<unsigned*>(begin) + words, &kPoison, bytes % sizeof kPoison);  // the rest of the last
+    std::memcpy(static_cast<unsigned*>(begin) + words, &kPoison,
+                bytes % sizeof kPoison);  // the rest of the last
 }
 
 }  // namespace cudasim

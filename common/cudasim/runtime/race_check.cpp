@@ -52,10 +52,10 @@ class Snapshot {
 };
 
 void report(const LaunchRequest& request, const std::string& difference) {
-    const std::string text = "the result of " + text_of(request) + " depends on the order of its threads\n" +
-                             difference +
-                             "\nthreads race for this value: a barrier or an atomic is missing, or an atomic is "
-                             "used whose outcome depends on the order";
+    const std::string text =
+        "the result of " + text_of(request) + " depends on the order of its threads\n" + difference +
+        "\nthreads race for this value: a barrier or an atomic is missing, or an atomic is "
+        "used whose outcome depends on the order";
     if (findings)
         *findings += (findings->empty() ? "" : "\n") + text;
     else
@@ -64,7 +64,9 @@ void report(const LaunchRequest& request, const std::string& difference) {
 
 }  // namespace
 
-bool checks_races() { return findings || settings().race_check; }
+bool checks_races() {
+    return findings || settings().race_check;
+}
 
 bool run_in_all_orders(const LaunchRequest& request) {
     const Snapshot before;

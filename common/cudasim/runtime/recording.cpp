@@ -26,9 +26,10 @@ Recording::~Recording() {
 }
 
 std::size_t Recording::count(const std::string& kernel_prefix) const {
-    return static_cast<std::size_t>(std::count_if(launches_.begin(), launches_.end(), [&](const Launch& launch) {
-        return launch.kernel.compare(0, kernel_prefix.size(), kernel_prefix) == 0;
-    }));
+    return static_cast<std::size_t>(
+        std::count_if(launches_.begin(), launches_.end(), [&](const Launch& launch) {
+            return launch.kernel.compare(0, kernel_prefix.size(), kernel_prefix) == 0;
+        }));
 }
 
 void Recording::note_allocation(std::size_t bytes) {

@@ -21,8 +21,8 @@ std::string text_of(const char* file, int line);
 std::string text_of(const LaunchRequest& launch);
 /// "kernel ..., block (0,0,0)": what the calling OS thread is running.
 std::string running_block_text();
-/// The same with the thread, where threadIdx is stored for certain: in all that a kernel calls. (Between calls the
-/// optimiser may keep it in a register.)
+/// The same with the thread, where threadIdx is stored for certain: in all that a kernel calls. (Between
+/// calls the optimiser may keep it in a register.)
 std::string running_thread_text();
 
 /// The thread of a block with that number.

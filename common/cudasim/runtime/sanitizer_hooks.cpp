@@ -21,14 +21,15 @@ void after_report(const char*) {
 
 }  // namespace
 
-void install_sanitizer_hooks() { __asan_set_error_report_callback(after_report); }
+void install_sanitizer_hooks() {
+    __asan_set_error_report_callback(after_report);
+}
 
 }  // namespace cudasim
 
 // Called by UndefinedBehaviorSanitizer before each report.
 extern "C" void __ubsan_on_report() {
-    if (cudasim::running_launch)
-        cudasim::say("undefined behaviour in " + cudasim::running_thread_text());
+    if (cudasim::running_launch) cudasim::say("undefined behaviour in " + cudasim::running_thread_text());
 }
 #else
 void cudasim::install_sanitizer_hooks() {}

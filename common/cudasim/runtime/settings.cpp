@@ -38,11 +38,19 @@ Order order_from_environment() {
     return {Order::kShuffled, static_cast<unsigned>(seed)};
 }
 
+// More do not help kernels of the course's size, and each wants a stack for each thread of a block: the
+// number of memory mappings of a process is limited (65530 by default on Linux).
+constexpr unsigned kUsualWorkers = 16;
+
+unsigned default_workers() {
+    return std::clamp(std::thread::hardware_concurrency(), 1u, kUsualWorkers);
+}
+
 }  // namespace
 
 Settings& settings() {
     static Settings settings = {
-        number("CUDASIM_THREADS", std::max(1u, std::thread::hardware_concurrency()), 1, "a number from 1 to 1024"),
+        number("CUDASIM_THREADS", default_workers(), 1, "a number from 1 to 1024"),
         order_from_environment(),
         number("CUDASIM_RACECHECK", 0, 0, "0 or 1") != 0,
         static_cast<int>(number("CUDASIM_LEAK_EXIT", 0, 0, "an exit code from 0 to 255")),
@@ -50,11 +58,17 @@ Settings& settings() {
     return settings;
 }
 
-OrderScope::OrderScope(Order order) : before_(settings().order) { settings().order = order; }
-OrderScope::~OrderScope() { settings().order = before_; }
+OrderScope::OrderScope(Order order) : before_(settings().order) {
+    settings().order = order;
+}
+OrderScope::~OrderScope() {
+    settings().order = before_;
+}
 WorkerScope::WorkerScope(unsigned workers) : before_(settings().workers) {
     settings().workers = workers < before_ ? workers : before_;
 }
-WorkerScope::~WorkerScope() { settings().workers = before_; }
+WorkerScope::~WorkerScope() {
+    settings().workers = before_;
+}
 
 }  // namespace cudasim

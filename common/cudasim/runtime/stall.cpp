@@ -1,5 +1,6 @@
-// When no thread of the block can go on: either lanes have ended that others need not wait for, or the threads
-// have gone different ways and wait for each other for ever, which on a GPU hangs or gives wrong results.
+// When no thread of the block can go on: either lanes have ended that others need not wait for, or the
+// threads have gone different ways and wait for each other for ever, which on a GPU hangs or gives wrong
+// results.
 #include <algorithm>
 #include <tuple>
 
@@ -21,7 +22,9 @@ struct Crowd {
 };
 
 void add(std::vector<Crowd>& crowds, const Fiber& fiber) {
-    const auto key = [](const WaitPlace& p) { return std::tuple(std::string(p.file), p.line, p.mask, p.name); };
+    const auto key = [](const WaitPlace& p) {
+        return std::tuple(std::string(p.file), p.line, p.mask, p.name);
+    };
     const unsigned number = number_of(fiber);
     for (Crowd& crowd : crowds)
         if (key(crowd.place) == key(fiber.place)) {

@@ -1,8 +1,8 @@
 // Streams have nothing to do: all work is done when a call returns. Events take the time.
 #include <chrono>
 
+#include "runtime/errors.h"
 #include "runtime/host_call.h"
-#include "runtime/launch_errors.h"
 
 struct CUstream_st {};
 
@@ -14,7 +14,9 @@ struct CUevent_st {
 using cudasim::HostCall;
 using cudasim::set_last_error;
 
-cudaError_t cudaStreamCreate(cudaStream_t* stream) { return cudaStreamCreateWithFlags(stream, cudaStreamDefault); }
+cudaError_t cudaStreamCreate(cudaStream_t* stream) {
+    return cudaStreamCreateWithFlags(stream, cudaStreamDefault);
+}
 
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
     if (!stream) return set_last_error(cudaErrorInvalidValue);
@@ -28,11 +30,19 @@ cudaError_t cudaStreamDestroy(cudaStream_t stream) {
     return cudaSuccess;
 }
 
-cudaError_t cudaStreamSynchronize(cudaStream_t) { return cudaDeviceSynchronize(); }
-cudaError_t cudaStreamQuery(cudaStream_t) { return cudaDeviceSynchronize(); }
-cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) { return cudaSuccess; }
+cudaError_t cudaStreamSynchronize(cudaStream_t) {
+    return cudaDeviceSynchronize();
+}
+cudaError_t cudaStreamQuery(cudaStream_t) {
+    return cudaDeviceSynchronize();
+}
+cudaError_t cudaStreamWaitEvent(cudaStream_t, cudaEvent_t, unsigned) {
+    return cudaSuccess;
+}
 
-cudaError_t cudaEventCreate(cudaEvent_t* event) { return cudaEventCreateWithFlags(event, cudaEventDefault); }
+cudaError_t cudaEventCreate(cudaEvent_t* event) {
+    return cudaEventCreateWithFlags(event, cudaEventDefault);
+}
 
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
     if (!event) return set_last_error(cudaErrorInvalidValue);
@@ -59,7 +69,9 @@ cudaError_t cudaEventSynchronize(cudaEvent_t event) {
     return cudaDeviceSynchronize();
 }
 
-cudaError_t cudaEventQuery(cudaEvent_t event) { return cudaEventSynchronize(event); }
+cudaError_t cudaEventQuery(cudaEvent_t event) {
+    return cudaEventSynchronize(event);
+}
 
 cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t start, cudaEvent_t stop) {
     if (!milliseconds) return set_last_error(cudaErrorInvalidValue);

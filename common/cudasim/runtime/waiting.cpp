@@ -7,7 +7,9 @@
 namespace cudasim {
 namespace {
 
-bool same_text(const char* a, const char* b) { return a == b || std::strcmp(a, b) == 0; }
+bool same_text(const char* a, const char* b) {
+    return a == b || std::strcmp(a, b) == 0;
+}
 
 // A kernel's barriers outside of a kernel: there is no block to wait for.
 void require_kernel(const char* name) {
@@ -23,8 +25,8 @@ Votes wait_for_block(bool predicate, const char* name, const char* file, int lin
     return Worker::mine().wait_for_block(predicate, {name, file, line, 0});
 }
 
-WarpExchange wait_for_warp(unsigned mask, std::uint64_t value, bool predicate, const char* name, const char* file,
-                           int line) {
+WarpExchange wait_for_warp(unsigned mask, std::uint64_t value, bool predicate, const char* name,
+                           const char* file, int line) {
     require_kernel(name);
     return Worker::mine().wait_for_warp(value, predicate, {name, file, line, mask});
 }

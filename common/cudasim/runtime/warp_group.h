@@ -8,8 +8,8 @@
 
 namespace cudasim {
 
-/// All exchanges of a warp under one mask. A lane that is done with one may already bring its value for the next,
-/// while others have not looked at the results yet: so there is room for two in turn.
+/// All exchanges of a warp under one mask. A lane that is done with one may already bring its value for the
+/// next, while others have not looked at the results yet: so there is room for two in turn.
 struct WarpGroup {
     unsigned mask;
     unsigned arrived = 0, votes = 0;    ///< lanes, in the exchange that is under way

@@ -1,9 +1,9 @@
 /// @file
 /// A worker: one OS thread that runs blocks, one at a time, and switches between a block's threads.
 ///
-/// A fiber runs threads of the block in a plain loop. When one of them has to wait (barrier, warp operation), it
-/// stays where it is, with its fiber, and the loop goes on in another fiber. So a kernel without barriers costs
-/// what a loop costs, and one with barriers needs at most a fiber for each thread of a block.
+/// A fiber runs threads of the block in a plain loop. When one of them has to wait (barrier, warp operation),
+/// it stays where it is, with its fiber, and the loop goes on in another fiber. So a kernel without barriers
+/// costs what a loop costs, and one with barriers needs at most a fiber for each thread of a block.
 #pragma once
 #include <memory>
 #include <vector>
@@ -80,8 +80,8 @@ class Worker {
     bool warps_used_ = false;
 
     std::vector<std::unique_ptr<Fiber>> fibers_;
-    std::vector<Fiber*> idle_;     ///< run no thread
-    std::vector<Fiber*> ready_;    ///< their thread need not wait any longer; from ready_begin_ on
+    std::vector<Fiber*> idle_;   ///< run no thread
+    std::vector<Fiber*> ready_;  ///< their thread need not wait any longer; from ready_begin_ on
     std::size_t ready_begin_ = 0;
     Fiber native_;  ///< the OS thread's stack, which runs no kernel
     Fiber* current_ = &native_;

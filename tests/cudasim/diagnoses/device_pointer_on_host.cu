@@ -1,7 +1,9 @@
 // Host code reads what a device pointer points to.
 #include <cuda_runtime.h>
 
-__global__ void fill_kernel(int* values) { values[threadIdx.x] = 5; }
+__global__ void fill_kernel(int* values) {
+    values[threadIdx.x] = 5;
+}
 
 int main() {
     int* values = nullptr;

@@ -1,4 +1,5 @@
-// All threads wait, but not at the same barrier: CUDA allows a barrier in a branch only if all threads take it.
+// All threads wait, but not at the same barrier: CUDA allows a barrier in a branch only if all threads take
+// it.
 #include <cuda_runtime.h>
 
 __global__ void branches_kernel(int* values) {

@@ -84,6 +84,10 @@ add_diagnosis(crash_after_barrier PROGRAM crash ARGUMENT 6 EXIT fail EXPECT
 add_diagnosis(host_pointer EXIT 0 EXPECT
     "cannot launch kernel host_pointer_kernel (launched at " "@launch@): argument 2 points to no device memory")
 
+add_diagnosis(launch_in_kernel EXIT fail EXPECT
+    "a kernel launch was called by a kernel; only host code may"
+    "in kernel outer_kernel (launched at " "@launch@), block (2,0,0), thread (7,0,0)")
+
 # Races.
 add_diagnosis(race_between_blocks SANITIZE thread EXIT fail ENVIRONMENT CUDASIM_THREADS=4 EXPECT
     "WARNING: ThreadSanitizer: data race" "racing_count_kernel" "@race@"
@@ -99,7 +103,7 @@ add_diagnosis(leak EXIT 3 EXPECT
     "bytes allocated at ")
 add_diagnosis(leak_exit PROGRAM leak ENVIRONMENT CUDASIM_LEAK_EXIT=23 EXIT 23 EXPECT "4024 bytes of device memory leaked")
 add_diagnosis(unchecked_error EXIT 0 EXPECT
-    "cannot launch kernel never_kernel (launched at " "@launch@): the block (1025,1,1) is larger than"
+    "cannot launch kernel never_kernel (launched at " "@launch@): the block (1025,1,1) is larger than (1024,1024,64)"
     "nobody asked for the error of kernel never_kernel (launched at "
     "@launch@): cudaErrorInvalidConfiguration (invalid configuration argument)" "and of 1 more launches")
 add_diagnosis(bad_order PROGRAM leak ENVIRONMENT CUDASIM_ORDER=backwards EXIT 2 EXPECT

@@ -1,7 +1,9 @@
 // A launch fails, and nobody asks.
 #include <cuda_runtime.h>
 
-__global__ void never_kernel(int* values) { values[threadIdx.x] = 1; }
+__global__ void never_kernel(int* values) {
+    values[threadIdx.x] = 1;
+}
 
 int main() {
     int* values = nullptr;

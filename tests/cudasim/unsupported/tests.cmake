@@ -14,8 +14,20 @@ add_unsupported(MANAGED_MEMORY "error: .*has no cudaMallocManaged: use cudaMallo
 add_unsupported(ACTIVE_MASK "error: .*has no __activemask: .*__ballot_sync")
 add_unsupported(GRAPHS "uses.cu:[0-9]+:[0-9]+: error: .*cudaGraph_t")
 # Errors of the learner's own name the learner's file and line.
-add_unsupported(WRONG_ARGUMENT "uses.cu:28:[0-9]+: error: .*no known conversion for argument 1 from .*double.* to .*int")
-add_unsupported(TOO_FEW_ARGUMENTS "uses.cu:30:[0-9]+: error: no match for call")
+function(place_of_mark result mark)
+    file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/unsupported/uses.cu lines)
+    set(number 0)
+    foreach(line IN LISTS lines)
+        math(EXPR number "${number} + 1")
+        if(line MATCHES "mark: ${mark}$")
+            set(${result} "uses.cu:${number}:" PARENT_SCOPE)
+        endif()
+    endforeach()
+endfunction()
+place_of_mark(wrong wrong)
+place_of_mark(few few)
+add_unsupported(WRONG_ARGUMENT "${wrong}[0-9]+: error: .*no known conversion for argument 1 from .*double.* to .*int")
+add_unsupported(TOO_FEW_ARGUMENTS "${few}[0-9]+: error: no match for call")
 
 add_test(NAME "cudasim unsupported: nothing" COMMAND ${CMAKE_CXX_COMPILER} -std=c++17 -fsyntax-only
     -I${cudasim_include} ${copy})

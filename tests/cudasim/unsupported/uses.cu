@@ -1,4 +1,5 @@
-// Each part uses something the simulator does not have; the compiler must say so. Compiled with one of them defined.
+// Each part uses something the simulator does not have; the compiler must say so. Compiled with one of them
+// defined.
 #include <cuda_runtime.h>
 #if defined(COOPERATIVE_GROUPS)
 #include <cooperative_groups.h>
@@ -25,9 +26,9 @@ int main() {
 #elif defined(MANAGED_VARIABLE)
     shared_by_all = 1;
 #elif defined(WRONG_ARGUMENT)
-    kernel<<<1, 1>>>(3.5);  // mark: launch
+    kernel<<<1, 1>>>(3.5);  // mark: wrong
 #elif defined(TOO_FEW_ARGUMENTS)
-    kernel<<<1, 1>>>();
+    kernel<<<1, 1>>>();  // mark: few
 #else
     cudaMalloc(&values, 4);
 #endif

@@ -6,7 +6,8 @@
 
 namespace cudasim {
 
-/// Keeps T from being deduced, so that `atomicAdd(&unsigned_counter, 1)` converts its 1 as a plain call would.
+/// Keeps T from being deduced, so that `atomicAdd(&unsigned_counter, 1)` converts its 1 as a plain call
+/// would.
 template <class T>
 struct Exactly {
     using type = T;
@@ -90,6 +91,12 @@ inline unsigned atomicDec(unsigned* address, unsigned limit) {
 }
 
 // Writes before the fence are seen before writes after it, by other blocks (__threadfence), too.
-inline void __threadfence() { __atomic_thread_fence(__ATOMIC_SEQ_CST); }
-inline void __threadfence_system() { __atomic_thread_fence(__ATOMIC_SEQ_CST); }
-inline void __threadfence_block() { __atomic_signal_fence(__ATOMIC_SEQ_CST); }  // a block runs on one worker
+inline void __threadfence() {
+    __atomic_thread_fence(__ATOMIC_SEQ_CST);
+}
+inline void __threadfence_system() {
+    __atomic_thread_fence(__ATOMIC_SEQ_CST);
+}
+inline void __threadfence_block() {
+    __atomic_signal_fence(__ATOMIC_SEQ_CST);
+}  // a block runs on one worker

@@ -15,7 +15,9 @@ Votes wait_for_block(bool predicate, const char* name, const char* file, int lin
 
 }  // namespace cudasim
 
-inline void __syncthreads(CUDASIM_CALLER) { cudasim::wait_for_block(false, "__syncthreads()", file, line); }
+inline void __syncthreads(CUDASIM_CALLER) {
+    cudasim::wait_for_block(false, "__syncthreads()", file, line);
+}
 inline int __syncthreads_count(int predicate, CUDASIM_CALLER) {
     return cudasim::wait_for_block(predicate != 0, "__syncthreads_count()", file, line).count;
 }

@@ -7,7 +7,7 @@
 
 /// Those members of CUDA's structure that all toolkit versions have and the simulator can fill in.
 struct cudaDeviceProp {
-    char name[256];            ///< "CUDA simulator (2 CPU threads)"
+    char name[256];              ///< "CUDA simulator (2 CPU threads)"
     std::size_t totalGlobalMem;  ///< memory of this machine, bytes
     std::size_t sharedMemPerBlock;
     std::size_t totalConstMem;

@@ -1,6 +1,6 @@
 /// @file
-/// Device memory. It is ordinary memory of this machine, but the simulator keeps a list of it, so that copies to
-/// the wrong place, leaks and host pointers handed to kernels are found.
+/// Device memory. It is ordinary memory of this machine, but the simulator keeps a list of it, so that copies
+/// to the wrong place, leaks and host pointers handed to kernels are found.
 #pragma once
 #include <cstddef>
 
@@ -29,7 +29,8 @@ void add_symbol(void* symbol, std::size_t bytes);
 /// The memory starts out as a NaN pattern (cudasim::kPoison), 256-byte aligned.
 template <class T>
 cudaError_t cudaMalloc(T** pointer, std::size_t bytes, CUDASIM_CALLER) {
-    return cudasim::allocate(reinterpret_cast<void**>(pointer), bytes, cudasim::MemoryKind::kDevice, file, line);
+    return cudasim::allocate(reinterpret_cast<void**>(pointer), bytes, cudasim::MemoryKind::kDevice, file,
+                             line);
 }
 inline cudaError_t cudaFree(void* pointer, CUDASIM_CALLER) {
     return cudasim::release(pointer, cudasim::MemoryKind::kDevice, file, line);
@@ -37,7 +38,8 @@ inline cudaError_t cudaFree(void* pointer, CUDASIM_CALLER) {
 /// Host memory that kernels may use, too.
 template <class T>
 cudaError_t cudaMallocHost(T** pointer, std::size_t bytes, CUDASIM_CALLER) {
-    return cudasim::allocate(reinterpret_cast<void**>(pointer), bytes, cudasim::MemoryKind::kPinnedHost, file, line);
+    return cudasim::allocate(reinterpret_cast<void**>(pointer), bytes, cudasim::MemoryKind::kPinnedHost, file,
+                             line);
 }
 inline cudaError_t cudaFreeHost(void* pointer, CUDASIM_CALLER) {
     return cudasim::release(pointer, cudasim::MemoryKind::kPinnedHost, file, line);
@@ -51,7 +53,8 @@ inline cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes
     return cudaMemcpy(to, from, bytes, kind, file, line);
 }
 cudaError_t cudaMemset(void* to, int byte, std::size_t bytes, CUDASIM_CALLER);
-inline cudaError_t cudaMemsetAsync(void* to, int byte, std::size_t bytes, cudaStream_t = nullptr, CUDASIM_CALLER) {
+inline cudaError_t cudaMemsetAsync(void* to, int byte, std::size_t bytes, cudaStream_t = nullptr,
+                                   CUDASIM_CALLER) {
     return cudaMemset(to, byte, bytes, file, line);
 }
 

@@ -26,8 +26,8 @@ using cudaError = cudaError_t;
 const char* cudaGetErrorName(cudaError_t error);
 /// "invalid argument"
 const char* cudaGetErrorString(cudaError_t error);
-/// The last error of this host thread, which is then forgotten. Unlike on a GPU that goes for a crashed kernel
-/// too: the device is usable afterwards, so that a test can provoke errors and carry on.
+/// The last error of this host thread, which is then forgotten. Unlike on a GPU that goes for a crashed
+/// kernel too: the device is usable afterwards, so that a test can provoke errors and carry on.
 cudaError_t cudaGetLastError();
 /// The last error of this host thread, which stays.
 cudaError_t cudaPeekAtLastError();

@@ -7,8 +7,8 @@
 
 namespace cudasim {
 
-/// Mapped memory joins the list of what kernels may use. `discard`: it is poisoned first, since a kernel that reads
-/// what it promised to overwrite is wrong.
+/// Mapped memory joins the list of what kernels may use. `discard`: it is poisoned first, since a kernel that
+/// reads what it promised to overwrite is wrong.
 void add_graphics_memory(void* begin, std::size_t bytes, bool discard);
 void remove_graphics_memory(void* begin);
 /// Says why on stderr, and notes and returns the error.

@@ -4,8 +4,8 @@
 
 namespace cudasim {
 
-/// While it lives, host code may use device pointers; else a build with AddressSanitizer ends the program. For
-/// library functions that stand for kernels but run as plain functions here.
+/// While it lives, host code may use device pointers; else a build with AddressSanitizer ends the program.
+/// For library functions that stand for kernels but run as plain functions here.
 class HostAccess {
   public:
     HostAccess();

@@ -11,8 +11,9 @@
 #define __launch_bounds__(...)
 #define __align__(bytes) __attribute__((aligned(bytes)))
 
-// One copy for each worker thread, which runs one block at a time: that is what shared memory is. The rewriter
-// replaces declarations with this word (shared_memory.h); the definition here serves those in macros.
+// One copy for each worker thread, which runs one block at a time: that is what shared memory is. The
+// rewriter replaces declarations with this word (shared_memory.h); the definition here serves those in
+// macros.
 #define __shared__ static thread_local
 
 // Marks what the simulator does not have. A use is a compile error that says `message`.
@@ -25,4 +26,15 @@
 #define CUDASIM_UNSUPPORTED(message) __attribute__((error(message)))
 #endif
 
-#define __managed__ CUDASIM_UNSUPPORTED("the CUDA simulator has no managed memory: use cudaMalloc and cudaMemcpy")
+// GCC says by a macro which sanitizer it compiles for, Clang when asked.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) && !defined(__SANITIZE_ADDRESS__)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#if __has_feature(thread_sanitizer) && !defined(__SANITIZE_THREAD__)
+#define __SANITIZE_THREAD__ 1
+#endif
+#endif
+
+#define __managed__ \
+    CUDASIM_UNSUPPORTED("the CUDA simulator has no managed memory: use cudaMalloc and cudaMemcpy")

@@ -5,11 +5,12 @@
 ///
 /// becomes, on one line,
 ///
-///     CUDASIM_SHARED_BEGIN(tile) float tile[256]; CUDASIM_SHARED_END(tile) auto& tile = cudasim_memory_tile.tile;
+///     CUDASIM_SHARED_BEGIN(tile) float tile[256]; CUDASIM_SHARED_END(tile) auto& tile =
+///     cudasim_memory_tile.tile;
 ///
 /// that is a structure with one copy for each worker. The first thread of a block that comes by fills it with
-/// poison: a kernel that reads what nobody wrote gets NaN, not the values of the block before. In a build with
-/// AddressSanitizer the structure has a forbidden zone at both ends.
+/// poison: a kernel that reads what nobody wrote gets NaN, not the values of the block before. In a build
+/// with AddressSanitizer the structure has a forbidden zone at both ends.
 #pragma once
 #include <cstddef>
 
@@ -45,8 +46,10 @@ void* dynamic_shared();
 
 }  // namespace cudasim
 
+// clang-format off
 #define CUDASIM_SHARED_BEGIN(name) struct cudasim_shared_##name { char cudasim_before[::cudasim::kRedZone];
-#define CUDASIM_SHARED_END(name)                                                             \
-    char cudasim_after[::cudasim::kRedZone]; unsigned long cudasim_block; };                 \
-    static thread_local cudasim_shared_##name cudasim_memory_##name;                         \
+#define CUDASIM_SHARED_END(name)                                                        \
+    char cudasim_after[::cudasim::kRedZone]; unsigned long cudasim_block; };            \
+    static thread_local cudasim_shared_##name cudasim_memory_##name;                    \
     ::cudasim::begin_shared(cudasim_memory_##name);
+// clang-format on

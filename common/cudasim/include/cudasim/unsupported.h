@@ -1,13 +1,14 @@
 /// @file
-/// Calls that CUDA courses often use and the simulator does not have: using one is a compile error that says what
-/// to do instead. What is not named here does not exist at all.
+/// Calls that CUDA courses often use and the simulator does not have: using one is a compile error that says
+/// what to do instead. What is not named here does not exist at all.
 #pragma once
 #include "cudasim/errors.h"
 #include "cudasim/keywords.h"
 
-#define CUDASIM_NOT_HERE(function, advice) \
-    template <class... Arguments>          \
-    CUDASIM_UNSUPPORTED("the CUDA simulator has no " #function ": " advice) cudaError_t function(Arguments...)
+#define CUDASIM_NOT_HERE(function, advice)                                  \
+    template <class... Arguments>                                           \
+    CUDASIM_UNSUPPORTED("the CUDA simulator has no " #function ": " advice) \
+    cudaError_t function(Arguments...)
 
 CUDASIM_NOT_HERE(cudaMallocManaged, "use cudaMalloc and cudaMemcpy");
 CUDASIM_NOT_HERE(cudaMemPrefetchAsync, "it belongs to managed memory; use cudaMalloc and cudaMemcpy");
@@ -27,14 +28,17 @@ CUDASIM_NOT_HERE(cudaGraphLaunch, "it has no graphs; launch the kernels one by o
 CUDASIM_NOT_HERE(cudaStreamAddCallback, "streams end with the call; call the function after it");
 CUDASIM_NOT_HERE(cudaLaunchHostFunc, "streams end with the call; call the function after it");
 CUDASIM_NOT_HERE(cudaLaunchKernel, "use kernel<<<grid, block>>>(arguments)");
-CUDASIM_NOT_HERE(cudaLaunchCooperativeKernel, "end the kernel and launch the next: that is a barrier of the grid");
+CUDASIM_NOT_HERE(cudaLaunchCooperativeKernel,
+                 "end the kernel and launch the next: that is a barrier of the grid");
 CUDASIM_NOT_HERE(cudaFuncSetAttribute, "a block has 48 KiB of shared memory");
 CUDASIM_NOT_HERE(cudaFuncGetAttributes, "registers and occupancy exist on a GPU only");
-CUDASIM_NOT_HERE(cudaOccupancyMaxPotentialBlockSize, "occupancy exists on a GPU only; choose 128 or 256 threads");
+CUDASIM_NOT_HERE(cudaOccupancyMaxPotentialBlockSize,
+                 "occupancy exists on a GPU only; choose 128 or 256 threads");
 CUDASIM_NOT_HERE(cudaOccupancyMaxActiveBlocksPerMultiprocessor, "occupancy exists on a GPU only");
 CUDASIM_NOT_HERE(cudaDeviceGetAttribute, "use cudaGetDeviceProperties");
 CUDASIM_NOT_HERE(cudaPointerGetAttributes, "remember what you allocated where");
-CUDASIM_NOT_HERE(__activemask, "it tells which lanes happen to run together; say which you mean, as __ballot_sync does");
+CUDASIM_NOT_HERE(__activemask,
+                 "it tells which lanes happen to run together; say which you mean, as __ballot_sync does");
 CUDASIM_NOT_HERE(__match_any_sync, "use __ballot_sync and __shfl_sync");
 CUDASIM_NOT_HERE(__match_all_sync, "use __ballot_sync and __shfl_sync");
 CUDASIM_NOT_HERE(__shfl, "it was removed from CUDA; use __shfl_sync(mask, ...)");

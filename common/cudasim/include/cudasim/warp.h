@@ -1,6 +1,6 @@
 /// @file
-/// Warp operations: the 32 threads of a warp exchange values. All lanes named in `mask` that have not ended must
-/// call the same operation with the same mask.
+/// Warp operations: the 32 threads of a warp exchange values. All lanes named in `mask` that have not ended
+/// must call the same operation with the same mask.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -17,15 +17,19 @@ struct WarpExchange {
     unsigned votes;               ///< lanes whose predicate was not 0
 };
 /// Waits for the lanes in `mask`. The result is good until this thread's next warp operation.
-WarpExchange wait_for_warp(unsigned mask, std::uint64_t value, bool predicate, const char* name, const char* file,
-                           int line);
+WarpExchange wait_for_warp(unsigned mask, std::uint64_t value, bool predicate, const char* name,
+                           const char* file, int line);
 
-inline int lane() { return static_cast<int>(thread_number() % 32); }
+inline int lane() {
+    return static_cast<int>(thread_number() % 32);
+}
 
-/// The value that `source` brought. A lane that took no part gives the poison pattern: on a GPU it is undefined.
+/// The value that `source` brought. A lane that took no part gives the poison pattern: on a GPU it is
+/// undefined.
 template <class T>
 T shuffle(unsigned mask, T value, int source, const char* name, const char* file, int line) {
-    static_assert(sizeof(T) == 4 || sizeof(T) == 8, "a shuffle moves 4 or 8 bytes: shuffle a struct by members");
+    static_assert(sizeof(T) == 4 || sizeof(T) == 8,
+                  "a shuffle moves 4 or 8 bytes: shuffle a struct by members");
     std::uint64_t raw = 0;
     std::memcpy(&raw, &value, sizeof value);
     const WarpExchange exchange = wait_for_warp(mask, raw, false, name, file, line);
