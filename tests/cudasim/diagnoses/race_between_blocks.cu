@@ -9,7 +9,10 @@ int main() {
     int* count = nullptr;
     cudaMalloc(&count, sizeof(int));
     cudaMemset(count, 0, sizeof(int));
-    racing_count_kernel<<<4000, 64>>>(count);  // mark: launch
+    // Many launches: on a busy machine one worker may have done all blocks of one before another wakes up.
+    for (int launch = 0; launch < 20; ++launch) {
+        racing_count_kernel<<<4000, 64>>>(count);  // mark: launch
+    }
     cudaFree(count);
     return 0;
 }
