@@ -60,7 +60,6 @@ class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const Start& start)
         : program_(program),
-          spacing_m_(start.spacing_m),
           camera_(first_view(settings.scene.tank).camera()),
           table_("The water's state",
                  {"step", "time (s)", "front (m)", "kinetic energy (J)", "total energy (J)",
@@ -98,7 +97,6 @@ class Recorder {
 
   private:
     course::Program& program_;
-    float spacing_m_;
     course::Camera camera_;
     course::Table table_;
     std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
