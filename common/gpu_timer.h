@@ -3,6 +3,7 @@
 /// them.
 #pragma once
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "common/cuda_check.h"
@@ -56,6 +57,13 @@ inline std::string device_name() {
     cudaDeviceProp properties;
     CUDA_CHECK(cudaGetDeviceProperties(&properties, 0));
     return properties.name;
+}
+
+/// Says of a Study or a StabilityMap that its kernels ran on the device.
+template <class Measured>
+void on_device(Measured& measured) {
+    measured.device = device_name();
+    measured.backend = measured.device.find("simulator") == std::string::npos ? "cuda" : "simulator";
 }
 
 }  // namespace course

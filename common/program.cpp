@@ -70,6 +70,10 @@ void Program::parse(int argc, char** argv) {
     app.add_option("--height", options.height, "picture height in pixels")->capture_default_str();
     app.add_option("--csv", options.csv, "also write the first table to this file");
     app.add_flag("--explain", options.explain, "say what is computed and what is left out, then stop");
+    app.add_option("--study", study_, "measure error against run time instead: see --list-studies");
+    app.add_option("--stability", stability_, "measure which time steps are stable instead");
+    app.add_flag("--list-studies", list_studies_, "name the studies and the stability maps, then stop");
+    app.add_flag("--quick", options.quick, "studies and stability maps with fewer and smaller points");
     app.parse(argc, argv);
     command_ = "ch" + chapter_;
     for (int k = 1; k < argc; ++k) command_ += std::string(" ") + argv[k];
@@ -94,6 +98,7 @@ void Program::check() const {
         known = known || scene == options.scene;
         names += (names.empty() ? "" : ", ") + scene;
     }
+    check_measures();
     want(known, "there is no scene '" + options.scene + "': choose one of " + names);
 }
 
@@ -101,6 +106,10 @@ int Program::run(int argc, char** argv, const std::function<void()>& body) {
     try {
         parse(argc, argv);
         check();
+        if (list_studies_) {
+            list_studies();
+            return 0;
+        }
         options.particles = std::uint32_t(parser_->particles);
         options.steps = int(parser_->steps);
         if (!options.explain) {
@@ -111,6 +120,10 @@ int Program::run(int argc, char** argv, const std::function<void()>& body) {
             }
         }
         result_ = std::make_unique<Result>(chapter_, title_, sentence_, options.out);
+        if (measures()) {
+            measure();
+            return 0;
+        }
         body();
         if (!options.explain && !options.window) result_->save(command_, options.csv);
         return 0;
@@ -124,8 +137,10 @@ int Program::run(int argc, char** argv, const std::function<void()>& body) {
     } catch (const Unstable& error) {
         std::fprintf(stderr, "error: %s\n", error.what());
         try {
-            result_->note(std::string("Stopped: ") + error.what());
-            result_->save(command_, options.csv);
+            if (!measures()) {
+                result_->note(std::string("Stopped: ") + error.what());
+                result_->save(command_, options.csv);
+            }
         } catch (const std::exception& second) {
             std::fprintf(stderr, "error: %s\n", second.what());
         }

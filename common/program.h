@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/result.h"
+#include "common/study.h"
 
 namespace course {
 
@@ -24,6 +25,7 @@ struct ProgramOptions {
     int width = 1280, height = 720;  ///< of pictures, in pixels
     std::filesystem::path csv;       ///< the first table goes there too, if given
     bool explain = false;            ///< print what the scene computes and what it leaves out, then stop
+    bool quick = false;              ///< studies and stability maps with fewer and smaller points
 };
 
 /// One chapter's program: declare options, then `return program.run(argc, argv, body)` from main.
@@ -44,6 +46,11 @@ class Program {
     void option(const std::string& name, std::string& value, const std::string& help);
     void flag(const std::string& name, bool& value, const std::string& help);
 
+    /// A measurement of error against run time that `--study NAME` runs instead of the program.
+    void study(StudyQuestion question, std::function<void(Study&)> measure);
+    /// A map of stable time steps that `--stability NAME` runs instead of the program.
+    void stability(StabilityQuestion question, std::function<void(StabilityMap&)> measure);
+
     /// Parses, checks, makes the output folder, calls `body`, and turns errors into a sentence and an exit
     /// code: 0 done, 1 unexpected error, 2 bad input, 3 unstable.
     int run(int argc, char** argv, const std::function<void()>& body);
@@ -55,11 +62,19 @@ class Program {
   private:
     void parse(int argc, char** argv);
     void check() const;
+    bool measures() const;  ///< is a study or a stability map asked for?
+    void check_measures() const;
+    void measure();
+    void list_studies() const;
 
     struct Parser;
     std::string chapter_, title_, sentence_, command_;
     std::unique_ptr<Parser> parser_;
     std::unique_ptr<Result> result_;
+    std::vector<std::pair<StudyQuestion, std::function<void(Study&)>>> studies_;
+    std::vector<std::pair<StabilityQuestion, std::function<void(StabilityMap&)>>> stability_maps_;
+    std::string study_, stability_;  ///< the one asked for, if any
+    bool list_studies_ = false;
 };
 
 /// For programs that would fill the host's memory: asked first, the answer is a sentence, and nobody is
