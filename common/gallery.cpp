@@ -10,57 +10,37 @@
 
 #include "common/errors.h"
 #include "common/files.h"
+#include "common/html.h"
 
 namespace {
 
-std::string escape(const std::string& text) {
-    std::string out;
-    for (char c : text)
-        out += c == '<'   ? "&lt;"
-               : c == '>' ? "&gt;"
-               : c == '&' ? "&amp;"
-               : c == '"' ? "&quot;"
-                          : std::string(1, c);
-    return out;
-}
-
-const char* const kHead = R"(<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Fire &amp; Water on the GPU: the tour</title><style>
-body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1d2733;background:#fbfcfd}
-h1{margin-bottom:0}h2{margin-top:3rem;border-top:1px solid #d5dce4;padding-top:1.5rem}
-figure{display:inline-block;margin:.5rem 1rem .5rem 0;max-width:100%;vertical-align:top}
-figure img{max-width:100%;width:34rem;border-radius:6px;display:block}figure.wide img{width:70rem}
-figcaption{color:#52616f;font-size:.9rem}table{border-collapse:collapse;margin:1rem 0}
-caption{text-align:left;color:#52616f}th,td{padding:.2rem .8rem;border-bottom:1px solid #e1e7ed;text-align:right}
-th:first-child,td:first-child{text-align:left}code{background:#eef2f6;padding:.1rem .3rem;border-radius:3px}
-</style></head><body><h1>Fire &amp; Water on the GPU</h1><p>The tour of all chapters on this machine.</p>
-)";
+using course::escape_html;
 
 void add_chapter(std::string& html, const std::string& folder, const nlohmann::json& result) {
-    const auto text = [&](const char* key) { return escape(result.at(key).get<std::string>()); };
-    html += "<section id=\"" + escape(folder) + "\"><h2>" + text("title") + "</h2>\n<p>" + text("sentence") +
-            "</p>\n<p><code>" + text("command") + "</code> &middot; computed on: " + text("device") +
-            "</p>\n";
+    const auto text = [&](const char* key) { return escape_html(result.at(key).get<std::string>()); };
+    html += "<section id=\"" + escape_html(folder) + "\"><h2>" + text("title") + "</h2>\n<p>" +
+            text("sentence") + "</p>\n<p><code>" + text("command") +
+            "</code> &middot; computed on: " + text("device") + "</p>\n";
     for (const auto& picture : result.at("pictures")) {
-        const std::string source = escape(folder + "/" + picture.at("file").get<std::string>());
-        const std::string caption = escape(picture.at("caption").get<std::string>());
+        const std::string source = escape_html(folder + "/" + picture.at("file").get<std::string>());
+        const std::string caption = escape_html(picture.at("caption").get<std::string>());
         html += "<figure><a href=\"" + source + "\"><img src=\"" + source + "\" alt=\"" + caption +
                 "\"></a><figcaption>" + caption + "</figcaption></figure>\n";
     }
     for (const auto& table : result.at("tables")) {
-        html += "<table><caption>" + escape(table.at("caption").get<std::string>()) + "</caption><tr>";
+        html += "<table><caption>" + escape_html(table.at("caption").get<std::string>()) + "</caption><tr>";
         for (const auto& name : table.at("columns"))
-            html += "<th>" + escape(name.get<std::string>()) + "</th>";
+            html += "<th>" + escape_html(name.get<std::string>()) + "</th>";
         html += "</tr>\n";
         for (const auto& row : table.at("rows")) {
             html += "<tr>";
-            for (const auto& cell : row) html += "<td>" + escape(cell.get<std::string>()) + "</td>";
+            for (const auto& cell : row) html += "<td>" + escape_html(cell.get<std::string>()) + "</td>";
             html += "</tr>\n";
         }
         html += "</table>\n";
     }
-    for (const auto& note : result.at("notes")) html += "<p>" + escape(note.get<std::string>()) + "</p>\n";
+    for (const auto& note : result.at("notes"))
+        html += "<p>" + escape_html(note.get<std::string>()) + "</p>\n";
     html += "</section>\n";
 }
 
@@ -80,7 +60,8 @@ int main(int argc, char** argv) {
                 folders.push_back(entry.path().filename().string());
         if (folders.empty()) throw course::BadInput("no chapter result in " + out.string());
         std::sort(folders.begin(), folders.end());  // folder names begin with the chapter's number
-        std::string html = kHead;
+        std::string html =
+            course::html_head("Fire & Water on the GPU", "The tour of all chapters on this machine.");
         for (const std::string& folder : folders) {
             std::ifstream file(out / folder / "result.json");
             std::string section;
