@@ -105,10 +105,10 @@ std::string plot_script(const StudyData& study) {
         const std::string mark = " pt " + std::to_string(look.variant == 0 ? kFilled[c] : kHollow[c]);
         // The bar between the quartiles lies along the axis of time.
         plot += (plot.empty() ? "plot " : ", \\\n     ") + name +
-                (study.error_against_time ? " using 1:2:3:4 with xerrorbars notitle pt 0 lw 1"
-                                          : " using 1:2:3:4 with yerrorbars notitle pt 0 lw 1") +
-                colour + ", " + name + " using 1:2 with linespoints lw 2 ps 1 title " +
-                quoted(study.lines[k].method) + colour + dashes + mark;
+                (study.error_against_time ? " using 1:2:3:4 with xerrorbars pt 0 lw 1"
+                                          : " using 1:2:3:4 with yerrorbars pt 0 lw 1") +
+                colour + " notitle" + ", " + name + " using 1:2 with linespoints lw 2 ps 1" + colour +
+                dashes + mark + " title " + quoted(study.lines[k].method);
     }
     if (plot.empty()) throw std::runtime_error("no row can be drawn on logarithmic axes");
     return script + plot + "\n";
