@@ -1,6 +1,6 @@
 # Sourced by ./course: gpu-check, everything that needs a real GPU, in one go and with its results in one folder.
 # Each part's result is written before the next begins, so that a machine that goes away leaves what was done.
-# Expects setup.sh and doctor.sh.
+# Expects setup.sh, doctor.sh and report.sh.
 # shellcheck shell=bash
 
 gpu_build=$root/build/gpu-check
@@ -46,7 +46,7 @@ register_report() {  # as the compiler told it during the build
 }
 
 gpu_check() {
-    local results=$root/out/gpu-check chapter tool failed_parts=()
+    local results=$root/out/gpu-check chapter tool kind name failed_parts=()
     case ${1:-} in
         '') ;;
         --out) results=$(realpath -m "${2:?gpu-check --out needs a folder}") ;;
@@ -83,6 +83,14 @@ gpu_check() {
     done
     part run_10_large 120 "$gpu_build/bin/ch10_water_sph" --particles 131072 --steps 2000 \
         --out "$results/10_water_sph_large" --csv "$results/10_water_sph_large.csv"
+    for chapter in $(cuda_chapters); do
+        while read -r kind name; do
+            part "${kind}_${chapter}_$name" 60 "$gpu_build/bin/ch$chapter" "--$kind" "$name" --quick --out "$results/report/$chapter"
+        done < <(measurements_of "$gpu_build" "$chapter")
+    done
+    if command -v gnuplot >/dev/null; then
+        part report 60 "$gpu_build/bin/course_report" "$results/report" "$results/report.html"
+    fi
     part gallery 30 "$gpu_build/bin/course_gallery" "$results"
     echo "results: $results"
     [ ${#failed_parts[@]} = 0 ] || stop 1 "failed: ${failed_parts[*]}"

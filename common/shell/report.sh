@@ -2,6 +2,11 @@
 # Expects setup.sh.
 # shellcheck shell=bash
 
+# What a chapter's program can measure: "study NAME" or "stability NAME", a line each.
+measurements_of() {  # BUILD CHAPTER
+    "$1/bin/ch$2" --list-studies 2>/dev/null | sed -n 's/^\(study\|stability\) \([a-z0-9_]*\):.*/\1 \2/p'
+}
+
 report() {
     local quick=() only='' chapter chapters kind name done=0 total start=$SECONDS failed=()
     while [ $# -gt 0 ]; do
@@ -23,11 +28,10 @@ report() {
     build_targets $(printf 'ch%s ' $chapters) course_report
     left_out | while read -r line; do say "not measured: $line"; done
 
-    # "chapter kind name", a line each; what an earlier report left of these chapters goes.
+    # "chapter kind name", a line each.
     local measurements=''
     for chapter in $chapters; do
-        rm -f "$root/out/report/$chapter"/{study,stability}_*
-        measurements+=$("$build/bin/ch$chapter" --list-studies | sed -n "s/^\(study\|stability\) \([a-z0-9_]*\):.*/$chapter \1 \2/p")$'\n'
+        measurements+=$(measurements_of "$build" "$chapter" | sed "s/^/$chapter /")$'\n'
     done
     measurements=$(grep . <<<"$measurements") || stop 1 "no chapter has a study"
     total=$(wc -l <<<"$measurements")
@@ -35,6 +39,7 @@ report() {
     while read -r chapter kind name; do
         done=$((done + 1))
         say "[$done/$total] $chapter: $kind $name (after $((SECONDS - start)) s)"
+        rm -f "$root/out/report/$chapter/${kind}_$name".* # an old result must not pass for a new one
         "$build/bin/ch$chapter" "--$kind" "$name" "${quick[@]}" --out "$root/out/report/$chapter" \
             >"$logs/report_${chapter}_$name.log" </dev/null || failed+=("$chapter $kind $name (exit code $?)")
     done <<<"$measurements"
