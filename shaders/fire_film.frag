@@ -1,0 +1,48 @@
+#version 330 core
+// From light to a photograph.
+
+uniform sampler2D scenery;    // what is solid
+uniform sampler2D solid_depth;
+uniform sampler2D fire;       // sprites, premultiplied
+uniform sampler2D glare_map;  // the fire, blurred
+uniform float glare;
+uniform float exposure;
+uniform vec2 picture_px;
+
+out vec4 result;
+
+// A number in [0, 1) for each pixel.
+float grain(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }
+
+// Sprites over what is solid.
+vec3 light_at(ivec2 pixel) {
+    pixel = clamp(pixel, ivec2(0), textureSize(fire, 0) - 1);
+    vec4 sprites = texelFetch(fire, pixel, 0);
+    return sprites.rgb + (1.0 - sprites.a) * texelFetch(scenery, pixel, 0).rgb;
+}
+float depth_at(ivec2 pixel) {
+    float depth = texelFetch(solid_depth, clamp(pixel, ivec2(0), textureSize(fire, 0) - 1), 0).r;
+    return 1.0 / (1.00001 - depth);  // nearly proportional to metres
+}
+
+//! [film]
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 light = light_at(pixel), around = vec3(0.0);
+    // One ray a pixel leaves steps in the outlines of what is solid: there a pixel shares with its neighbours.
+    float here = depth_at(pixel), jump = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        ivec2 other = pixel + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
+        around += 0.25 * light_at(other);
+        jump = max(jump, abs(depth_at(other) - here) / here);
+    }
+    light = mix(light, around, 0.6 * smoothstep(0.03, 0.06, jump));
+    if (glare > 0.0) light = mix(light, texture(glare_map, gl_FragCoord.xy / picture_px).rgb, glare);
+    // Film runs out of grains: each colour comes near 1 and never reaches it. Red is first, then green; so
+    // the deep orange of a black body turns yellow where flames overlap, as on a photograph.
+    vec3 exposed = 1.0 - exp(-exposure * light);
+    // Half a step of noise before rounding to 8 bits: the dark keeps its shades without bands.
+    vec3 noise = vec3(grain(gl_FragCoord.xy) - 0.5) / 255.0;
+    result = vec4(exposed + noise * 2.0 * sqrt(exposed + 0.0001), 1.0);
+}
+//! [film]
