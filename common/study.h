@@ -48,7 +48,7 @@ class Study {
 
     const StudyQuestion question;
     const bool quick;             ///< asked for fewer and smaller points: a look, not a measurement
-    std::string backend = "cpu";  ///< "cpu", "simulator" or "cuda": see on_device() in gpu_timer.h
+    std::string backend = "cpu";  ///< or "simulator", "cuda" (on_device() in gpu_timer.h), "opengl"
     std::string device;           ///< the processor's name, until a chapter says otherwise
 
     /// So many rows will come: from now on, each one moves the progress line.
