@@ -28,6 +28,9 @@ struct StudyQuestion {
     std::string error_kind;  ///< what `error` means, against which answer, and in what unit
     std::string parameter;   ///< what is varied within a method: "dt_s", "support_in_spacings", "n"
     StudyPlot plot = StudyPlot::error_against_time;
+    /// Method names are "CASE, METHOD", or only "CASE": cases are different problems, and a conclusion that
+    /// one of them is cheaper would mean nothing. Only methods within a case are compared.
+    bool lines_are_cases = false;
 };
 
 /// One measured point of a study.

@@ -83,13 +83,13 @@ int main(int argc, char** argv) {
     program.option("--drag", drag_per_s, "linear drag per second (below 0: the scene's)");
     program.option("--restitution", restitution,
                    "vertical speed after / before a bounce (below 0: the scene's)");
-    program.study(
-        {"time_step", "What does a smaller time step buy, and when does it buy nothing more?",
-         "largest distance from the exact height after one second of flight, 64 droplets (m)", "dt_s"},
-        study_time_step);
+    program.study({"time_step", "What does a smaller time step buy, and when does it buy nothing more?",
+                   "largest distance from the exact height after one second of flight, 64 droplets (m)",
+                   "dt_s", course::StudyPlot::error_against_time, true},
+                  study_time_step);
     program.study({"layout", "Which layout is cheaper, and for what?",
                    "droplets in which the layouts differ, and the difference of their counts", "n",
-                   course::StudyPlot::time_against_value},
+                   course::StudyPlot::time_against_value, true},
                   study_layout);
     program.stability({"drag", "Up to which time step does drag slow a droplet down?",
                        "after 200 steps the droplet is slower than at the start",

@@ -70,9 +70,9 @@ inline void study_time_step(course::Study& study) {
     const std::vector<int> steps{1 << 5, 1 << 7, 1 << 9, 1 << 11, 1 << 13, 1 << 15, 1 << 17, 1 << 19};
     study.expect(3 * int(steps.size()));
     const auto move_in_float = [](const Fountain& f, glm::vec3& x, glm::vec3& v) { move(f, x, v); };
-    for (const int s : steps) add_flight<glm::vec3>(study, "float", 20, s, move_in_float);
-    for (const int s : steps) add_flight<glm::vec3>(study, "float, 10 km up", 1e4, s, move_in_float);
-    for (const int s : steps) add_flight<glm::dvec3>(study, "double", 20, s, move_in_double);
+    for (const int s : steps) add_flight<glm::vec3>(study, "near the ground, float", 20, s, move_in_float);
+    for (const int s : steps) add_flight<glm::dvec3>(study, "near the ground, double", 20, s, move_in_double);
+    for (const int s : steps) add_flight<glm::vec3>(study, "10 km up, float", 1e4, s, move_in_float);
 }
 
 // ------------------------------------------------------------------------------------------------- layouts

@@ -86,11 +86,15 @@ course::Table tenths_table() {
     return table;
 }
 
+bool is_gpu(const std::string& device) {
+    return device.find("simulator") == std::string::npos;
+}
+
 void show(course::Program& program) {
     const course::ProgramOptions& o = program.options;
     course::Result& result = program.result();
     result.device = course::device_name();
-    const bool on_gpu = result.device.find("simulator") == std::string::npos;
+    const bool on_gpu = is_gpu(result.device);
     const std::vector<Version> versions = all_versions();
     const Input input = random_input(o.particles, o.seed);
 
@@ -101,14 +105,16 @@ void show(course::Program& program) {
     result.table(table_of(versions, input, on_gpu));
     result.table(tenths_table());
     result.note("Every version gives what the CPU reference gives, and so does Thrust.");
-    if (!on_gpu)
-        result.note(
-            "Counts, not times: on the CUDA simulator a barrier costs what it costs a CPU. The studies "
-            "(--list-studies) measure such times and say so.");
+    if (!on_gpu) result.note("Counts, not times: on the CUDA simulator a barrier costs what it costs a CPU.");
 }
 
 void declare_studies(course::Program& program) {
     using course::StudyPlot;
+    program.study({"summation", "Which way to add floats gives how many digits, in what time?",
+                   "relative error of the sum against the exact one", "n"},
+                  study_summation);
+    // How long a barrier takes on the simulator is nobody's question: there the measure is the counts.
+    if (!is_gpu(course::device_name())) return;
     const std::string exact = "elements that differ from the CPU's result (0: all are exact)";
     program.study(
         {"reduce", "Which sum is fast, for how many elements?", exact, "n", StudyPlot::time_against_value},
@@ -125,9 +131,6 @@ void declare_studies(course::Program& program) {
     program.study({"bounds", "What does the CAS loop of the bounds cost against a tree?", exact, "n",
                    StudyPlot::time_against_value},
                   study_bounds);
-    program.study({"summation", "Which way to add floats gives how many digits, in what time?",
-                   "relative error of the sum against the exact one", "n"},
-                  study_summation);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ inline void add_support(course::Study& study, float support, const FullBox& full
     add("perfect lattice", full.water(full.lattice.position), plain_mass);
     Water settled = full.water(full.shaken());
     for (int step = 0; step < steps; ++step) settled.step(dt_s);
-    add("settled water", settled, plain_mass);
+    add("settled water, plain mass", settled, plain_mass);
     add("settled water, mass by lattice", settled, full.fluid.mass_kg);
 }
 

@@ -543,6 +543,6 @@ TEST_CASE("the studies run and find no wrong count") {
         int rows = 0;
         for (std::getline(csv, line); std::getline(csv, line); ++rows)
             CHECK_MESSAGE(line.find(",0,particles whose number") != std::string::npos, line);
-        CHECK(rows >= 24);
+        CHECK(rows >= 3 * 7);  // three clouds or more, seven rows each
     }
 }
