@@ -41,7 +41,9 @@ bool has_gnuplot() {
 }
 
 std::string study_json() {
-    course::Study study({"s", "Which \"one\" <is> it?", "m", "dt_s"}, "00_test", false);
+    course::Study study(
+        {"s", "Which \"one\" <is> it?", "m", "dt_s", course::StudyPlot::error_against_time, true}, "00_test",
+        false);
     for (int k = 1; k < 5; ++k) {
         study.add({"first", 1.0 / k, 1, 1.0 / k, {1e-3, 9e-4, 2e-3, 5}, double(k)});
         study.add(
@@ -162,6 +164,8 @@ TEST_CASE("what a study writes, the report reads") {
     CHECK(study.lines[0].points.size() == 4);
     CHECK(study.lines[0].points[2].seconds == 3 * 1e-3);  // steps times seconds per step
     CHECK(std::isinf(study.lines[1].points[0].error));
+    CHECK(study.error_against_time);
+    CHECK(study.lines_are_cases);
     CHECK(study.origin.question == "Which \"one\" <is> it?");
     CHECK_THROWS(load_stability(folder.path() / "s.json"));
 }
