@@ -102,12 +102,23 @@ void Program::check() const {
     want(known, "there is no scene '" + options.scene + "': choose one of " + names);
 }
 
+namespace {
+
+/// A full disk must not pass for success. @throws BadInput
+void finish_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw BadInput("standard output could not be written (is the disk full?)");
+}
+
+}  // namespace
+
 int Program::run(int argc, char** argv, const std::function<void()>& body) {
     try {
         parse(argc, argv);
         check();
         if (list_studies_) {
             list_studies();
+            finish_output();
             return 0;
         }
         options.particles = std::uint32_t(parser_->particles);
@@ -122,10 +133,11 @@ int Program::run(int argc, char** argv, const std::function<void()>& body) {
         result_ = std::make_unique<Result>(chapter_, title_, sentence_, options.out);
         if (measures()) {
             measure();
-            return 0;
+        } else {
+            body();
+            if (!options.explain && !options.window) result_->save(command_, options.csv);
         }
-        body();
-        if (!options.explain && !options.window) result_->save(command_, options.csv);
+        finish_output();
         return 0;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return parser_->app.exit(error);  // --help

@@ -28,6 +28,9 @@ struct StudyQuestion {
     std::string error_kind;  ///< what `error` means, against which answer, and in what unit
     std::string parameter;   ///< what is varied within a method: "dt_s", "support_in_spacings", "n"
     StudyPlot plot = StudyPlot::error_against_time;
+    /// Method names are "CASE, METHOD", or only "CASE": cases are different problems, and a conclusion that
+    /// one of them is cheaper would mean nothing. Only methods within a case are compared.
+    bool lines_are_cases = false;
 };
 
 /// One measured point of a study.
@@ -48,7 +51,7 @@ class Study {
 
     const StudyQuestion question;
     const bool quick;             ///< asked for fewer and smaller points: a look, not a measurement
-    std::string backend = "cpu";  ///< "cpu", "simulator" or "cuda": see on_device() in gpu_timer.h
+    std::string backend = "cpu";  ///< or "simulator", "cuda" (on_device() in gpu_timer.h), "opengl"
     std::string device;           ///< the processor's name, until a chapter says otherwise
 
     /// So many rows will come: from now on, each one moves the progress line.

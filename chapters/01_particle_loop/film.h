@@ -17,6 +17,10 @@ class Film {
           // After one life, one frame looks like the next.
           steps_per_frame_(std::max(1, std::min(options.steps, int(life_steps(fountain))) / kFrames)) {}
 
+    /// Memory for the pictures of a run: light (12 bytes a pixel), colours (3), and the PNG while it is made.
+    static double bytes(const course::ProgramOptions& options) {
+        return 20.0 * options.width * options.height;
+    }
     /// Is a frame due after so many steps?
     bool wants(int steps_done) const {
         return steps_done % steps_per_frame_ == 0 && frames_.size() < kFrames;

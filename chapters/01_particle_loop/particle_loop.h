@@ -105,10 +105,11 @@ inline Uniforms random_start(std::uint64_t seed, std::uint32_t id, std::uint32_t
 
 // ------------------------------------------------------------------------------------- who starts when
 
-/// Steps of one life, at least one.
+/// Steps of one life: at least one, and at most as many as can be counted (a time step of 0: endless life).
 constexpr std::uint32_t life_steps(const Fountain& fountain) {
     const float steps = fountain.lifetime_s / fountain.dt_s + 0.5f;
-    return steps < 1.0f ? 1u : std::uint32_t(steps);
+    if (!(steps >= 1.0f)) return 1u;
+    return steps < 0x1p32f ? std::uint32_t(steps) : 0xffffffffu;  // beyond, the conversion is undefined
 }
 
 /// What one step does to which droplets.

@@ -1,40 +1,31 @@
 /// @file
-/// Timing two versions of the same work on a machine that does other things as well.
+/// Timing several versions of the same work on a machine that does other things as well.
 #pragma once
-#include <algorithm>
 #include <chrono>
-#include <utility>
+#include <functional>
 #include <vector>
+
+#include "common/timing.h"
 
 namespace particle_loop {
 
-/// Seconds one call of `work` takes.
-template <class Work>
-double seconds(Work&& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+//! [by_turns]
+/// Times each of some works, in seconds a call. They take turns, so that whatever else the machine does meets
+/// all of them; the first round, in which caches fill and the clock speeds up, is not counted.
+inline std::vector<course::Timing> by_turns(int rounds, const std::vector<std::function<void()>>& works) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<std::vector<double>> seconds(works.size());
+    for (int round = 0; round <= rounds; ++round)
+        for (std::size_t w = 0; w < works.size(); ++w) {
+            const Clock::time_point start = Clock::now();
+            works[w]();
+            const std::chrono::duration<double> taken = Clock::now() - start;
+            if (round > 0) seconds[w].push_back(taken.count());
+        }
+    std::vector<course::Timing> timings;
+    for (const std::vector<double>& of_one : seconds) timings.push_back(course::timing_of(of_one));
+    return timings;
 }
-
-inline double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-}
-
-//! [compare]
-/// Median seconds of a call of `first` and of `second`. Their calls alternate, so that whatever else the
-/// machine does meets both; the first round, in which caches fill and the clock speeds up, is not counted.
-template <class First, class Second>
-std::pair<double, double> compare(int repeats, First&& first, Second&& second) {
-    std::vector<double> of_first, of_second;
-    for (int k = 0; k <= repeats; ++k) {
-        const double a = seconds(first), b = seconds(second);
-        if (k == 0) continue;
-        of_first.push_back(a);
-        of_second.push_back(b);
-    }
-    return {median(of_first), median(of_second)};
-}
-//! [compare]
+//! [by_turns]
 
 }  // namespace particle_loop

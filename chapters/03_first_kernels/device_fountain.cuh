@@ -72,6 +72,7 @@ struct Float4OnDevice {
     std::vector<Particle> download() const {
         const std::vector<float4> x = position.download(), v = velocity.download();
         std::vector<Particle> particles;
+        particles.reserve(x.size());
         for (std::size_t i = 0; i < x.size(); ++i)
             particles.push_back({{x[i].x, x[i].y, x[i].z}, {v[i].x, v[i].y, v[i].z}});
         return particles;

@@ -1,13 +1,12 @@
-// Chapter 03: the fountain on the device: parity with the CPU, three layouts timed, the price of copies.
-#include <cmath>
+// Chapter 03: the fountain on the device, its parity with the CPU, and clocks. Its studies: three layouts,
+// the price of copies; its stability map: drag.
+#include <chrono>
 #include <cstdio>
 
 #include "01_particle_loop/checks.h"
 #include "01_particle_loop/film.h"
-#include "01_particle_loop/scenes.h"
-#include "03_first_kernels/device_fountain.cuh"
 #include "03_first_kernels/mistakes.cuh"
-#include "03_first_kernels/parity.h"
+#include "03_first_kernels/studies.cuh"
 #include "common/gpu_timer.h"
 #include "common/program.h"
 
@@ -15,9 +14,9 @@ using namespace first_kernels;
 
 namespace {
 
+/// Of host memory: the host's own droplets, a download, and on the simulator the device's memory as well.
+constexpr double kBytesPerDroplet = sizeof(Particle) + 2 * (sizeof(Particle) + 2 * sizeof(float4));
 constexpr int kStepsPerLook = 50;  // a look at the state costs a copy; chapter 04 finds a cheaper one
-constexpr int kRepeats = 15;       // medians of so many samples
-constexpr int kBatch = 10;         // launches in a sample: one alone is over too soon to be measured well
 
 /// Runs the fountain on the device and draws it. @return its last state
 std::vector<Particle> show(course::Program& program, const Fountain& fountain, unsigned threads_per_block) {
@@ -64,61 +63,34 @@ void compare_with_host(course::Program& program, const Fountain& fountain,
     program.result().table(table);
 }
 
-/// n droplets as they leave the nozzle.
-std::vector<Particle> at_the_nozzle(const Fountain& fountain, std::uint32_t n) {
-    std::vector<Particle> particles(n);
-    for (std::uint32_t i = 0; i < n; ++i)
-        emit(fountain, particle_loop::random_start(fountain.seed, i, 0), particles[i].position_m,
-             particles[i].velocity_m_per_s);
-    return particles;
-}
+//! [three_clocks]
+/// The same ten steps by three clocks.
+void three_clocks(course::Program& program, const Fountain& fountain, unsigned threads_per_block) {
+    using Clock = std::chrono::steady_clock;
+    const auto ms_since = [](Clock::time_point start) {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    };
+    Float4OnDevice state(program.options.particles);
+    std::uint32_t step_index = life_steps(fountain);  // from here on, all droplets are in flight
+    const auto ten_steps = [&] {
+        for (int k = 0; k < 10; ++k) state.step(fountain, step_index++, threads_per_block);
+    };
+    ten_steps();  // to warm up
+    CUDA_CHECK(cudaDeviceSynchronize());
 
-/// Milliseconds of one step.
-template <class State>
-double step_ms(State state, const Fountain& fountain) {
-    std::uint32_t s = life_steps(fountain);  // from here on, all droplets are in flight
-    return course::median_milliseconds(kRepeats,
-                                       [&] {
-                                           for (int k = 0; k < kBatch; ++k) state.step(fountain, s++);
-                                       }) /
-           kBatch;
-}
-
-void compare_layouts(course::Program& program, const Fountain& fountain) {
-    course::Table table("One step in three layouts on " + program.result().device + " (median)",
-                        {"droplets", "AoS ms", "SoA ms", "float4 ms", "AoS GB/s", "SoA GB/s", "float4 GB/s"});
-    for (const std::uint32_t n : {1u << 12, 1u << 16, 1u << 20}) {
-        const std::vector<Particle> start = at_the_nozzle(fountain, n);
-        const double aos = step_ms(StructsOnDevice(start), fountain);
-        const double soa = step_ms(ArraysOnDevice(start), fountain);
-        const double vec = step_ms(Float4OnDevice(start), fountain);
-        // Each droplet is read once and written once: 2 * 24 bytes, with float4 2 * 32.
-        table.row({n, aos, soa, vec, 48e-6 * n / aos, 48e-6 * n / soa, 64e-6 * n / vec});
-    }
+    course::GpuTimer events;
+    const Clock::time_point start = Clock::now();
+    events.start();  // notes the device's time when the work before is done: at once
+    ten_steps();
+    const double launched_ms = ms_since(start);
+    const double events_ms = events.stop();  // notes it when the ten steps are done, and waits for that
+    const double done_ms = ms_since(start);
+    course::Table table("Ten steps on " + program.result().device + " by three clocks (ms)",
+                        {"host, launches returned", "device, between two events", "host, device done"});
+    table.row({launched_ms, events_ms, done_ms});
     program.result().table(table);
 }
-
-void price_of_copies(course::Program& program, const Fountain& fountain) {
-    course::Table table("A step, and a copy of its state to or from the host, on " + program.result().device +
-                            " (ms, median)",
-                        {"droplets", "upload", "step", "download", "copies / step"});
-    for (const std::uint32_t n : {1u << 12, 1u << 16, 1u << 20}) {
-        Float4OnDevice device(at_the_nozzle(fountain, n));
-        const std::vector<float4> x = device.position.download(), v = device.velocity.download();
-        const double upload = course::median_milliseconds(kRepeats, [&] {
-            device.position.upload(x);
-            device.velocity.upload(v);
-        });
-        std::vector<float4> back(n);  // once: allocating a vector each time would be measured, too
-        const double download = course::median_milliseconds(kRepeats, [&] {
-            for (const auto* from : {&device.position, &device.velocity})
-                CUDA_CHECK(cudaMemcpy(back.data(), from->data(), from->bytes(), cudaMemcpyDeviceToHost));
-        });
-        const double step = step_ms(std::move(device), fountain);
-        table.row({n, upload, step, download, (upload + download) / step});
-    }
-    program.result().table(table);
-}
+//! [three_clocks]
 
 void explain(const Fountain& fountain, std::uint32_t n, unsigned threads_per_block) {
     std::printf(
@@ -147,12 +119,23 @@ int main(int argc, char** argv) {
     float drag_per_s = -1.0f;
     int threads_per_block = int(kThreadsPerBlock);
     std::string mistake;
-    bool no_measure = false;
     program.option("--drag", drag_per_s, "linear drag per second (below 0: the scene's)");
     program.option("--block", threads_per_block, "threads per block, 1 to 1024");
     program.option("--mistake", mistake,
                    "make this mistake and stop: too-many-threads, unchecked, host-pointer, no-guard");
-    program.flag("--no-measure", no_measure, "pictures and parity only, no tables");
+    program.study(
+        {"layout", "Which layout is cheapest on the device, and from how many droplets on does it pay?",
+         "largest distance from the host's droplets after one life (m)", "n",
+         course::StudyPlot::time_against_value},
+        study_layout);
+    program.study({"copies", "What does it cost to take the state to the host and back?",
+                   "elements that differ from a state that stayed on the device", "n",
+                   course::StudyPlot::time_against_value},
+                  study_copies);
+    program.stability({"drag", "Up to which time step does drag slow a droplet down, on the device?",
+                       "after 200 steps the fastest droplet is slower than at the start",
+                       "each step multiplies the velocity by 1 - k dt, so dt < 2 / k", "drag k (1/s)"},
+                      map_drag);
     return program.run(argc, argv, [&] {
         const course::ProgramOptions& o = program.options;
         if (o.window) throw course::BadInput("--window: this chapter draws pictures only; 06 opens one");
@@ -166,10 +149,9 @@ int main(int argc, char** argv) {
         check(fountain);
         if (o.explain) return explain(fountain, o.particles, unsigned(threads_per_block));
         program.result().device = course::device_name();
+        course::require_memory(kBytesPerDroplet * o.particles + particle_loop::Film::bytes(o));
         if (!mistake.empty()) return program.result().note(make_mistake(mistake));
         compare_with_host(program, fountain, show(program, fountain, unsigned(threads_per_block)));
-        if (no_measure) return;
-        compare_layouts(program, particle_loop::make_scene("crown"));
-        price_of_copies(program, particle_loop::make_scene("crown"));
+        three_clocks(program, fountain, unsigned(threads_per_block));
     });
 }

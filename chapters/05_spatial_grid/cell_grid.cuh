@@ -7,8 +7,17 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include "04_parallel_patterns/bounds.cuh"
+
 /// Chapter 05: cells, and who is near whom.
 namespace grid {
+
+// Chapter 04's: particles as vectors, and the box around them, so that the grid can follow them.
+using patterns::Bounds;
+using patterns::bounds_cpu;
+using patterns::find_bounds;
+using patterns::is_finite;
+using patterns::xyz;
 
 /// Where the cells are. Cells are numbered x fastest, then y, then z, from 0 to cell_count() - 1.
 /// One number more, cell_count() itself, is the *limbo*: particles whose position is not finite go there, and
@@ -22,16 +31,6 @@ struct CellGrid {
         return std::uint32_t(size.x) * std::uint32_t(size.y) * std::uint32_t(size.z);
     }
 };
-
-inline __host__ __device__ glm::vec3 xyz(float4 v) {
-    return {v.x, v.y, v.z};
-}
-
-/// False for NaN and both infinities. (x - x is 0 for a finite x and NaN otherwise.)
-inline __host__ __device__ bool is_finite(glm::vec3 x) {
-    const glm::vec3 zero = x - x;
-    return zero.x == 0.0f && zero.y == 0.0f && zero.z == 0.0f;
-}
 
 //! [cell_of]
 /// Cell that holds the point. Points beyond the grid belong to the nearest cell of its rim: clamping moves no

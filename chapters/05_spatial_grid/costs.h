@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "05_spatial_grid/scan.cuh"
+#include "04_parallel_patterns/scan.cuh"
 
 namespace grid {
+
+using patterns::ExclusiveScan;
 
 /// Price of one method.
 struct Cost {

@@ -7,11 +7,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "04_parallel_patterns/scan.cuh"
 #include "05_spatial_grid/cell_grid.cuh"
-#include "05_spatial_grid/scan.cuh"
 #include "common/device_buffer.h"
 
 namespace grid {
+
+using patterns::blocks_for;
+using patterns::ExclusiveScan;
 
 /// Particles of cell c: places cell_first[c] to cell_last[c] - 1 of the order sorted by cell.
 struct CellRanges {
@@ -80,11 +83,6 @@ __global__ void gather_kernel(T* sorted, const T* data, const std::uint32_t* ord
     if (place < n) sorted[place] = data[order[place]];
 }
 //! [gather_kernel]
-
-/// Blocks that cover n threads.
-inline std::uint32_t blocks_for(std::uint32_t n, std::uint32_t threads) {
-    return (n + threads - 1) / threads;
-}
 
 //! [CountingSort]
 /// Sorts up to `max_particles` particles into up to `max_cells` cells, again and again, in memory made once.

@@ -1,18 +1,17 @@
-// Chapter 05: neighbours by brute force and over the grid, in three steps; time against the number of
-// particles.
+// Chapter 05: neighbours by brute force and over the grid, in three steps. What they cost is measured by its
+// studies.
 #include "05_spatial_grid/costs.h"
-#include "05_spatial_grid/crowding.cuh"
-#include "05_spatial_grid/measure.cuh"
 #include "05_spatial_grid/pictures.h"
+#include "05_spatial_grid/studies.cuh"
 #include "common/program.h"
 
 using namespace grid;
 
 namespace {
 
-constexpr int kRepeats = 5;         // medians of so many runs
-constexpr int kFirstExponent = 12;  // the smallest cloud measured: 2^12 particles
 constexpr std::uint32_t kCrowd = 1u << 14;
+constexpr const char* kWrongCounts =
+    "particles whose number of neighbours is not brute force's (0: all are exact)";
 
 CellGrid grid_of(const std::vector<float4>& position, float radius_m) {
     const course::DeviceBuffer<float4> x(position);
@@ -75,37 +74,35 @@ Search search_in_the_middle(std::uint32_t n, std::uint64_t seed) {
     return s;
 }
 
-std::vector<Measurement> measure_all(int last_exponent, std::uint64_t seed) {
-    std::vector<Measurement> rows;
-    course::Progress progress("measuring", last_exponent - kFirstExponent + 1);
-    for (int exponent = kFirstExponent; exponent <= last_exponent; ++exponent) {
-        rows.push_back(measure(1u << exponent, seed, kRepeats));
-        progress.update(exponent - kFirstExponent + 1);
+/// Runs all methods on the cloud. @throws std::runtime_error if two of them disagree
+std::vector<std::uint32_t> neighbours_by_all_methods(Cloud& cloud) {
+    std::vector<std::uint32_t> reference, counts;
+    for (const Method& method : methods(cloud)) {
+        method.build();
+        method.query();
+        counts = method.counts();
+        if (reference.empty()) reference = counts;
+        check_same(counts, reference, method.name);
     }
-    return rows;
+    return counts;
 }
 
-course::Table table_of(const std::vector<Measurement>& rows) {
-    course::Table table("Milliseconds, medians of " + std::to_string(kRepeats) +
-                            " runs. Brute force was asked for 'asked' particles and its time scaled to all.",
-                        {"particles", "neighbours", "asked", "brute force", "bounds", "sort: build", "query",
-                         "count: build", "query", "reorder: build", "query"});
-    for (const Measurement& m : rows)
-        table.row({m.n, m.neighbours_each, m.asked, m.brute_force.query_ms, m.bounds_ms,
-                   m.sorted_grid.build_ms, m.sorted_grid.query_ms, m.counting_sort.build_ms,
-                   m.counting_sort.query_ms, m.reordered.build_ms, m.reordered.query_ms});
+course::Table methods_table(std::uint32_t n, const CellGrid& cells) {
+    course::Table table("What each method launches and stores, for " + std::to_string(n) + " particles",
+                        {"method", "kernels to build", "to query", "bytes a particle"});
+    for (const Cost& cost : costs(n, cells.cell_count()))
+        table.row({cost.method, cost.build.size(), cost.query.size(), double(cost.bytes) / n});
     return table;
 }
 
 course::Table crowding_table(std::uint64_t seed) {
     const float radius_m = radius_for_30(kCrowd);
-    course::Table table(
-        "Where it breaks: " + std::to_string(kCrowd) + " particles, ever more crowded (reordered search, ms)",
-        {"cloud", "cells", "fullest cell", "candidates", "neighbours", "build", "query"});
+    course::Table table("Where it breaks: " + std::to_string(kCrowd) + " particles, ever more crowded",
+                        {"cloud", "cells", "fullest cell", "candidates each", "neighbours each"});
     for (const Crowd& crowd : crowds(kCrowd, seed, radius_m)) {
-        const CrowdTimes t = measure_crowd(crowd.position, radius_m, kRepeats);
-        table.row(
-            {crowd.name, t.cells, t.fullest, t.candidates_each, t.neighbours_each, t.build_ms, t.query_ms});
+        Cloud cloud(crowd.position, radius_m);
+        const Crowding c = crowding_of(crowd.position, cloud.cells, neighbours_by_all_methods(cloud));
+        table.row({crowd.name, cloud.cells.cell_count(), c.fullest, c.candidates_each, c.neighbours_each});
     }
     return table;
 }
@@ -117,14 +114,15 @@ int main(int argc, char** argv) {
         "05_spatial_grid", "A spatial grid",
         "Who is near whom: brute force, and a grid that looks at 27 cells instead of everybody");
     program.options.particles = 4096;
-    int last_exponent = 19;
-    program.option("--max-exponent", last_exponent, "measure up to 2^this particles (12 to 24)");
+    program.study({"neighbours", "How does each method's time grow with the number of particles?",
+                   kWrongCounts, "n", course::StudyPlot::time_against_value},
+                  study_neighbours);
+    program.study({"occupancy", "What does it cost when particles crowd into few cells?", kWrongCounts,
+                   "particles_in_fullest_cell", course::StudyPlot::time_against_value},
+                  study_occupancy);
     return program.run(argc, argv, [&] {
         const course::ProgramOptions& o = program.options;
         if (o.window) throw course::BadInput("--window: this chapter draws pictures only; 06 opens one");
-        if (last_exponent < kFirstExponent || last_exponent > 24)
-            throw course::BadInput("--max-exponent must be from 12 to 24, not " +
-                                   std::to_string(last_exponent));
         if (o.particles > 1u << 24)
             throw course::BadInput("--particles must be from 1 to 16777216 in this chapter, not " +
                                    std::to_string(o.particles));
@@ -136,15 +134,11 @@ int main(int argc, char** argv) {
         course::save_png(o.out / "search.png", draw_search(search, o.width, o.height));
         result.picture("search.png",
                        "One particle's search: its cells, the candidates in them, its neighbours");
-        const std::vector<Measurement> rows = measure_all(last_exponent, o.seed);
-        course::save_png(o.out / "times.png", draw_times(rows, result.device, o.width, o.height));
-        result.picture("times.png", "Time against the number of particles, one line per method");
-        result.table(table_of(rows));
+        Cloud cloud(search.position, search.radius_m);
+        neighbours_by_all_methods(cloud);
+        result.table(methods_table(o.particles, cloud.cells));
         result.table(crowding_table(o.seed));
         result.note("The four methods find the same neighbours for every particle asked: the error is 0.");
-        result.note(result.device.find("simulator") == std::string::npos
-                        ? "Measured on: " + result.device + "."
-                        : "Times of the CUDA simulator, on the CPU: they compare these methods here and say "
-                          "nothing about a GPU.");
+        result.note("Times: ./course run 05 --study neighbours, and --study occupancy.");
     });
 }

@@ -38,9 +38,11 @@ class InteropBuffer {
   public:
     //! [register]
     /// Tries to share; if CUDA refuses, copies. handover() and why() tell what came of it.
+    /// @throws BadInput if it is empty: neither CUDA nor OpenGL maps nothing
     explicit InteropBuffer(std::size_t size, Handover wanted = Handover::shared,
                            RegisterCall register_call = register_gl_buffer)
         : size_(size), buffer_(size * sizeof(T)) {
+        if (size == 0) throw course::BadInput("a buffer of no elements can't be handed over");
         if (wanted == Handover::copied) {
             why_ = "asked for";
         } else {

@@ -51,6 +51,7 @@ struct Look {
     bool shadows = true;         ///< spheres only: the key light's shadows
     float occlusion_radii = 5;   ///< spheres only: reach of the dimming between near spheres; 0: none
     int samples_per_axis = 2;    ///< spheres only: 2 means 4 samples a pixel, smooth outlines
+    int mesh_rings = 0;          ///< spheres only, to compare: made of 4 rings^2 triangles; 0: impostors
     float floor_tile_m = 0.25f;  ///< distance of the lines on the floor
 };
 

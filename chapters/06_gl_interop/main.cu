@@ -3,12 +3,9 @@
 #include <list>
 
 #include "01_particle_loop/checks.h"
-#include "01_particle_loop/scenes.h"
-#include "06_gl_interop/measure.cuh"
+#include "06_gl_interop/studies.cuh"
 #include "06_gl_interop/wide_angle.h"
-#include "common/gl_context.h"
 #include "common/gl_window.h"
-#include "common/gpu_timer.h"
 #include "common/program.h"
 
 namespace {
@@ -25,7 +22,7 @@ using particle_loop::Fountain;
 struct Choices {
     std::string draw = "both";
     bool no_interop = false;
-    int repeats = 15;
+    int repeats = 5;
     int frames = 0;
 };
 
@@ -53,25 +50,44 @@ void run_headless(course::Program& program, const Choices& choices, const Founta
 
     struct Picture {
         ParticleRenderer renderer;
-        std::string file, caption;
+        std::string drawn_as, file, caption;
     };
     std::list<Picture> pictures;  // made first: a shader that does not compile is known before the long work
-    const auto plan = [&](Drawing drawing, const std::string& file, const std::string& caption) {
-        pictures.push_back({{options.width, options.height, fountain_look(drawing)}, file, caption});
+    const auto plan = [&](Drawing drawing, const std::string& drawn_as, const std::string& caption) {
+        pictures.push_back({{options.width, options.height, fountain_look(drawing)},
+                            drawn_as,
+                            "fountain_" + drawn_as + ".png",
+                            caption});
     };
-    if (scene.spheres) plan(Drawing::spheres, "fountain_spheres.png", "Droplets as lit spheres");
-    if (scene.points) plan(Drawing::points, "fountain_points.png", "The same droplets as points");
+    if (scene.spheres) plan(Drawing::spheres, "spheres", "Droplets as lit spheres");
+    if (scene.points) plan(Drawing::points, "points", "The same droplets as points");
 
     course::Progress progress("fountain", options.steps);
     for (int step = 0; step < options.steps; ++step) {
         droplets.step();
         progress.update(step + 1);
     }
+    const auto median_ms = [&](const auto& work) {
+        const auto frame = [&] {
+            work();
+            interop::finish();
+        };
+        return 1e3 * course::time_work(choices.repeats, frame).median_s;
+    };
+    std::vector<std::string> columns{"droplets", "handover", "copied (MB)", "step and handover"};
+    std::vector<double> draw_ms;
+    const bool shared = droplets.position().handover() == Handover::shared;
+    std::vector<course::Cell> cells{options.particles, shared ? "no copy" : "copy",
+                                    shared ? 0.0 : 1e-6 * 2 * sizeof(float4) * options.particles};
     for (Picture& picture : pictures) {
-        interop::draw(picture.renderer, droplets, interop::first_view().camera());
+        const auto draw = [&] { interop::draw(picture.renderer, droplets, interop::first_view().camera()); };
+        draw_ms.push_back(median_ms(draw));
         course::save_png(options.out / picture.file, picture.renderer.image());
         program.result().picture(picture.file, picture.caption);
+        columns.push_back("draw " + picture.drawn_as);
     }
+    cells.push_back(median_ms([&] { droplets.step(); }));
+    cells.insert(cells.end(), draw_ms.begin(), draw_ms.end());
     if (scene.spheres) {
         course::save_png(options.out / "wide_angle.png",
                          interop::wide_angle_picture(options.width, options.height));
@@ -79,9 +95,9 @@ void run_headless(course::Program& program, const Choices& choices, const Founta
             "wide_angle.png",
             "Pairs of spheres through a wide lens: ellipses off the middle, and circles where they meet");
     }
-    const interop::Measurement measurement{options.width, options.height, choices.repeats};
-    program.result().table(measure_handover(measurement, options.particles, scene, fountain));
-    if (scene.spheres) program.result().table(measure_samples(measurement, droplets));
+    course::Table table("Milliseconds, median of " + std::to_string(choices.repeats), columns);
+    table.row(cells);
+    program.result().table(table);
 }
 
 /// Numbers alone: plain device memory, and no OpenGL.
@@ -147,6 +163,13 @@ int main(int argc, char** argv) {
     program.option("--frames", choices.frames,
                    "close the window after so many frames (0: when the user does)");
     program.flag("--no-interop", choices.no_interop, "hand droplets over through a copy in host memory");
+    program.study(
+        {"spheres", "What does a rounder sphere cost: rays, triangles, or points?",
+         "difference from a picture with 36 rays a pixel, root mean square, of 255", "samples a pixel"},
+        interop::study_spheres);
+    program.study({"handover", "What does a copy through the host cost on the way to OpenGL?",
+                   "bytes that differ between the two ways", "n", course::StudyPlot::time_against_value},
+                  interop::study_handover);
     return program.run(argc, argv, [&] {
         const course::ProgramOptions& options = program.options;
         const FountainScene scene = make_scene(choices);
@@ -159,6 +182,11 @@ int main(int argc, char** argv) {
             return;
         }
         program.result().device = course::device_name();
+        // Where OpenGL and the simulator draw and compute on the CPU, all of it is the host's memory.
+        const interop::Needs needs = interop::needs(scene);
+        course::require_memory(double(options.particles) *
+                               double(needs.device_bytes_per_droplet + needs.gl_bytes_per_droplet +
+                                      needs.copied_bytes_per_droplet));
         if (options.window)
             run_window(program, choices, scene, fountain);
         else if (scene.draws())

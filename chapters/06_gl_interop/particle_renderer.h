@@ -52,7 +52,7 @@ class ParticleRenderer {
     course::Framebuffer picture_;
     // Only what the look needs is made.
     std::optional<course::Framebuffer> surface_, shadow_map_;
-    std::optional<Program> impostors_, lighting_, shadow_, points_, backdrop_, edges_;
+    std::optional<Program> spheres_, lighting_, shadow_, points_, backdrop_, edges_;
 };
 
 // ------------------------------------------------------------------------------------------------- making
@@ -68,7 +68,8 @@ inline ParticleRenderer::ParticleRenderer(int width_px, int height_px, const Loo
     if (look.drawing == Drawing::spheres) {
         const int samples = look.samples_per_axis;
         surface_.emplace(samples * width_px, samples * height_px, GL_RGBA16F, Framebuffer::Depth::float32);
-        impostors_.emplace(Files{"sphere_impostor.vert", "sphere_impostor.frag"});
+        spheres_.emplace(look.mesh_rings ? Files{"sphere_mesh.vert", "sphere_mesh.frag"}
+                                         : Files{"sphere_impostor.vert", "sphere_impostor.frag"});
         lighting_.emplace(
             Files{"fullscreen.vert", "lighting.frag", "openness.frag", "palette.frag", "backdrop.frag"});
         if (look.shadows) {
@@ -160,14 +161,21 @@ inline void ParticleRenderer::draw_surface(GLsizei count, float radius_m) {
     surface_->bind();
     glEnable(GL_DEPTH_TEST);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    impostors_->use();
-    impostors_->set("view", view_);
-    impostors_->set("projection", projection_);
-    impostors_->set("radius_m", radius_m);
-    impostors_->set("near_m", near_m_);
-    glVertexAttribDivisor(0, 1);  // a new position with each instance, that is, every four vertices
+    spheres_->use();
+    spheres_->set("view", view_);
+    spheres_->set("projection", projection_);
+    spheres_->set("radius_m", radius_m);
+    glVertexAttribDivisor(0, 1);  // a new position with each instance, that is, each sphere
     glVertexAttribDivisor(1, 1);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count);
+    if (look_.mesh_rings == 0) {
+        spheres_->set("near_m", near_m_);
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count);
+        return;
+    }
+    spheres_->set("rings", look_.mesh_rings);
+    glEnable(GL_CULL_FACE);  // the far side is not drawn
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 12 * look_.mesh_rings * look_.mesh_rings, count);
+    glDisable(GL_CULL_FACE);
 }
 //! [draw_surface]
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "10_water_sph/studies.cuh"
 #include "10_water_sph/water_view.cuh"
 #include "common/gl_context.h"
 #include "common/gl_window.h"
@@ -200,6 +201,7 @@ int main(int argc, char** argv) {
                    "factor on the scene's viscosity; 0: none, not even computed");
     program.option("--frames", choices.frames,
                    "close the window after so many frames (0: when the user does)");
+    declare_studies(program);
     return program.run(argc, argv, [&] {
         const Settings settings = make_settings(program.options, choices);
         // Start on the host, state on the device, which on the simulator is the host's memory too.
@@ -210,6 +212,8 @@ int main(int argc, char** argv) {
             return;
         }
         program.result().device = course::device_name();
+        if (const std::string broken = broken_limit(start.water.fluid(), start.dt_s); !broken.empty())
+            program.result().note(broken + ": the run may end, but its numbers mean little");
         if (program.options.window)
             run_window(program, choices, settings, start);
         else

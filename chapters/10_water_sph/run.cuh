@@ -94,19 +94,16 @@ inline std::string explain(const Settings& settings, const Start& start) {
 /// 64-bit FNV-1a hash of all positions and velocities, by particle number. Equal states have equal hashes;
 /// one different bit anywhere gives another.
 inline std::uint64_t state_hash(const Water& water) {
-    const std::vector<float4> x = water.positions().download(), v = water.velocities().download();
-    const std::vector<std::uint32_t> id = water.ids().download();
-    std::vector<std::uint32_t> place(id.size());
-    for (std::uint32_t k = 0; k < id.size(); ++k) place[id[k]] = k;
+    const std::vector<float4> x = by_id(water, water.positions()), v = by_id(water, water.velocities());
     std::uint64_t hash = 0xcbf29ce484222325u;
     const auto add = [&hash](float4 value) {
         unsigned char bytes[sizeof value];
         __builtin_memcpy(bytes, &value, sizeof value);
         for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
     };
-    for (std::uint32_t k : place) {
-        add(x[k]);
-        add(v[k]);
+    for (std::uint32_t i = 0; i < water.size(); ++i) {
+        add(x[i]);
+        add(v[i]);
     }
     return hash;
 }

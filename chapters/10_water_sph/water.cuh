@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "10_water_sph/check_input.h"
 #include "10_water_sph/sph.cuh"
 #include "common/device_buffer.h"
 
@@ -35,12 +36,11 @@ inline TimeStepLimit time_step_limit(const Fluid& fluid) {
 /// State of n particles on the device. Move-only.
 class Water {
   public:
-    /// @param position, velocity  w is ignored. Positions should lie in the box.
-    /// @throws course::BadInput if the box is narrower than the support radius: its walls could not be
-    /// mirrors.
+    /// @param position, velocity  w is ignored. Positions lie in the box.
+    /// @throws course::BadInput if the fluid, the box or a particle is not what a run can start from
     Water(const Fluid& fluid, const Box& box, EquationOfState state, const std::vector<float4>& position,
           const std::vector<float4>& velocity)
-        : fluid_(fluid),
+        : fluid_(checked(fluid, box, position, velocity)),
           box_(box),
           state_(state),
           n_(std::uint32_t(position.size())),
@@ -55,12 +55,6 @@ class Water {
           pressure_term_(n_),
           id_(n_),
           sorted_id_(n_) {
-        const float3 low = box.low_m, high = box.high_m;
-        const float narrowest_m = std::fmin(high.x - low.x, std::fmin(high.y - low.y, high.z - low.z));
-        if (!(narrowest_m >= fluid.support_m))
-            throw course::BadInput(
-                "the box is " + std::to_string(narrowest_m) + " m wide, less than the support radius of " +
-                std::to_string(fluid.support_m) + " m: use more, and so smaller, particles");
         std::vector<std::uint32_t> ids(n_);
         for (std::uint32_t i = 0; i < n_; ++i) ids[i] = i;
         id_.upload(ids);
@@ -91,6 +85,7 @@ class Water {
     const course::DeviceBuffer<std::uint32_t>& ids() const { return id_; }
     const Fluid& fluid() const { return fluid_; }
     const Box& box() const { return box_; }
+    EquationOfState state() const { return state_; }
     std::uint32_t cell_count() const { return cells_.cell_count(); }
     std::size_t cell_bytes() const { return sort_.cell_bytes(); }
 
@@ -102,6 +97,15 @@ class Water {
   private:
     static constexpr std::uint32_t kThreads = 128;
     std::uint32_t blocks() const { return grid::blocks_for(n_, kThreads); }
+
+    /// Before any member is made: a grid for a support radius of 0 would never be done.
+    static const Fluid& checked(const Fluid& fluid, const Box& box, const std::vector<float4>& position,
+                                const std::vector<float4>& velocity) {
+        check_fluid(fluid);
+        check_box(box, fluid.support_m);
+        check_particles(position, velocity, box);
+        return fluid;
+    }
 
     /// The box does not move, so neither does the grid: no pass over the particles to find their bounds.
     grid::CellGrid fixed_grid() const {

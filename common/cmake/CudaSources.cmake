@@ -6,14 +6,17 @@
 #   COURSE_USE_CUDA           the answer: TRUE for nvcc, FALSE for the simulator.
 #
 #   course_target(<target> SOURCES a.cu b.cpp ... [INCLUDE_DIRS dir...] [HEADERS file.cuh...]
-#                 [SANITIZE address|thread])
+#                 [SANITIZE address|thread] [COUNT_ACCESSES])
 #
 # takes an existing executable or library, adds the sources, the include roots (the repository and chapters/) and
 # links `course_cuda`. .cu files are CUDA for nvcc, and for the simulator C++ that common/cudasim/rewrite.cpp
 # makes from them. In a simulator build
 #   INCLUDE_DIRS  are searched before everything else, and the .cuh files in them are rewritten too;
 #   HEADERS       names the files to be rewritten in folders outside of the tree, where another command makes them;
-#   SANITIZE      builds this one target, and the simulator it links, with a sanitizer (nvcc: no effect).
+#   SANITIZE      builds this one target, and the simulator it links, with a sanitizer (nvcc: no effect);
+#   COUNT_ACCESSES builds this one target so that the simulator counts its kernels' loads, stores and atomics
+#                 (cudasim::Counts; no effect with nvcc, Clang or a sanitizer). Slow: nothing is optimised, so that
+#                 what is counted is what the source says.
 
 set(COURSE_CUDA AUTO CACHE STRING "AUTO (nvcc when a CUDA device answers, else the simulator), ON or OFF")
 set_property(CACHE COURSE_CUDA PROPERTY STRINGS AUTO ON OFF)
@@ -85,7 +88,7 @@ if(COURSE_USE_CUDA)
         $<$<COMPILE_LANGUAGE:CUDA>:-diag-suppress=20012 --expt-relaxed-constexpr>)
 
     function(course_target target)
-        cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
+        cmake_parse_arguments(arg "COUNT_ACCESSES" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
         target_sources(${target} PRIVATE ${arg_SOURCES})
         target_include_directories(${target} PRIVATE ${arg_INCLUDE_DIRS} ${CMAKE_SOURCE_DIR}
             ${CMAKE_SOURCE_DIR}/chapters)
@@ -98,6 +101,12 @@ endif()
 # All .cu and .cuh files of the tree are rewritten into a mirror of the tree. The mirror comes first in the include
 # path, so `#include "05_spatial_grid/grid.cuh"` finds the rewritten copy. One command a file: an edited header
 # is rewritten alone, and the compiler's dependency files rebuild what includes it.
+
+# COUNT_ACCESSES leans on how GCC compiles; Clang copies structures in ways that its hooks don't see.
+set(COURSE_CAN_COUNT FALSE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT COURSE_SANITIZE)
+    set(COURSE_CAN_COUNT TRUE)
+endif()
 
 set(COURSE_MIRROR ${CMAKE_BINARY_DIR}/cudasim_src)
 
@@ -141,7 +150,7 @@ function(course_mirror_path result path target)
 endfunction()
 
 function(course_target target)
-    cmake_parse_arguments(arg "" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
+    cmake_parse_arguments(arg "COUNT_ACCESSES" "SANITIZE" "SOURCES;INCLUDE_DIRS;HEADERS" ${ARGN})
     set(include_dirs "")
     set(copies "")
     foreach(dir IN LISTS arg_INCLUDE_DIRS)
@@ -191,5 +200,12 @@ function(course_target target)
         set(arg_SANITIZE "${COURSE_SANITIZE}")
     endif()
     set_target_properties(${target} PROPERTIES COURSE_SANITIZE "${arg_SANITIZE}")
+    if(arg_COUNT_ACCESSES AND NOT arg_SANITIZE AND COURSE_CAN_COUNT)
+        # ThreadSanitizer's compiler half calls a function at each access; its library half is not linked, since the
+        # simulator has these functions itself (runtime/access_hooks.cpp).
+        set_target_properties(${target} PROPERTIES COURSE_COUNT_ACCESSES ON)
+        target_compile_options(${target} PRIVATE -O0 -fsanitize=thread -Wno-tsan)
+        target_compile_definitions(${target} PRIVATE CUDASIM_COUNT_ACCESSES)
+    endif()
     target_link_libraries(${target} PRIVATE course_cuda)
 endfunction()

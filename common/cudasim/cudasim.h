@@ -5,6 +5,7 @@
 #include <cuda_runtime.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -12,11 +13,26 @@
 /// Runs CUDA kernels on the CPU. Tests see what was launched and allocated; chapters know nothing of it.
 namespace cudasim {
 
+/// What a launch did, counted one by one. Loads, stores and atomics are seen in targets that CMake builds
+/// with COUNT_ACCESSES (course_target()) and are 0 elsewhere; barriers and warp operations are counted
+/// always.
+struct Counts {
+    std::uint64_t global_loads = 0, global_stores = 0;
+    std::uint64_t global_bytes = 0;  ///< of these loads and stores
+    std::uint64_t shared_loads = 0, shared_stores = 0;
+    std::uint64_t global_atomics = 0, shared_atomics = 0;
+    std::uint64_t barriers = 0;         ///< of blocks: one when all threads of a block have met
+    std::uint64_t warp_operations = 0;  ///< of warps: one when all lanes of a warp have met
+
+    Counts& operator+=(const Counts& other);
+};
+
 /// One kernel launch.
 struct Launch {
     std::string kernel;  ///< text at the launch, for instance "forces_kernel<true>"
     dim3 grid, block;
     std::size_t shared_bytes;  ///< dynamic shared memory
+    Counts counts{};
 };
 
 /// Notes launches and allocations while it lives.
@@ -36,7 +52,11 @@ class Recording {
     /// Bytes those calls asked for.
     std::size_t bytes() const { return bytes_; }
 
+    /// Of all launches together.
+    Counts counts() const;
+
     void note_launch(const Launch& launch) { launches_.push_back(launch); }
+    void note_counts(const Counts& counts) { launches_.back().counts = counts; }
     void note_allocation(std::size_t bytes);
 
   private:

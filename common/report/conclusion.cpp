@@ -1,6 +1,7 @@
 #include "common/report/conclusion.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -18,11 +19,13 @@ std::string power_of_ten(int exponent) {
     return exponent == 0 ? "1" : "1e" + std::to_string(exponent);
 }
 
-/// "a", "a and b", "a, b and c"
+/// "a", "a and b", "a, b and c"; where a word has a comma itself: "a; b, float; c"
 std::string listed(const std::vector<std::string>& words) {
+    bool commas = false;
+    for (const std::string& word : words) commas = commas || word.find(',') != std::string::npos;
     std::string text;
     for (std::size_t k = 0; k < words.size(); ++k)
-        text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+        text += (k == 0 ? "" : commas ? "; " : k + 1 == words.size() ? " and " : ", ") + words[k];
     return text;
 }
 
@@ -94,7 +97,39 @@ std::string floors(const std::vector<Line>& lines) {
             found.push_back(line.method + " (" + format_number(best) + ")");
     }
     if (found.empty()) return "";
-    return " More time makes the error worse again, beyond its best, for " + listed(found) + ".";
+    return " Smallest errors, beyond which more time makes it worse again: " + listed(found) + ".";
+}
+
+/// Slope of log(y) over log(x), by least squares; infinite if there is no spread in x.
+double slope(const std::vector<Point>& points, double Point::*x_of, double Point::*y_of) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const Point& point : points) {
+        if (!(point.*x_of > 0 && point.*y_of > 0)) continue;
+        const double u = std::log(point.*x_of), v = std::log(point.*y_of);
+        n += 1, x += u, y += v, xx += u * u, xy += u * v;
+    }
+    const double spread = n * xx - x * x;
+    return spread > 1e-9 ? (n * xy - x * y) / spread : kInfinity;
+}
+
+std::string fixed(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+/// Of a line that has no rival.
+std::string alone_conclusion(const Line& line) {
+    const std::vector<Point> points = best_points(line);
+    if (points.empty()) return "No run had an error that could be measured.";
+    const Point &first = points.front(), &last = points.back();
+    if (points.size() == 1)
+        return "An error of " + format_number(first.error) + " in " + format_number(first.seconds) +
+               " s is its best.";
+    return "From an error of " + format_number(first.error) + " in " + format_number(first.seconds) +
+           " s to " + format_number(last.error) + " in " + format_number(last.seconds) +
+           " s: the error falls as the time to the power " +
+           fixed(slope(points, &Point::seconds, &Point::error)) + "." + floors({line});
 }
 
 std::string error_conclusion(const StudyData& study) {
@@ -117,13 +152,7 @@ std::string error_conclusion(const StudyData& study) {
             study.lines, [&](const Line& line) { return seconds_for_error(line, std::pow(10.0, k)); });
         if (!ranked.empty()) decades.push_back({k, ranked});
     }
-    if (study.lines.size() < 2 || decades.empty()) {
-        const Line& line = study.lines.front();
-        const std::vector<Point> points = best_points(line);
-        return line.method + ": from an error of " + format_number(points.front().error) + " in " +
-               format_number(points.front().seconds) + " s to " + format_number(points.back().error) +
-               " in " + format_number(points.back().seconds) + " s." + floors(study.lines);
-    }
+    if (study.lines.size() < 2) return alone_conclusion(study.lines.front());
 
     // The error that says most: the finest that the most methods reach, at least two of them.
     const Decade* main = nullptr;
@@ -136,22 +165,16 @@ std::string error_conclusion(const StudyData& study) {
                compared(main->ranked, "cheapest", "cheaper") + ". ";
 
     // Who wins where, as stretches of decades with one winner.
-    std::vector<std::string> stretches;
+    std::string stretches;
     for (std::size_t k = 0; k < decades.size();) {
         std::size_t end = k;
         const std::string& winner = decades[k].ranked.front().method;
         while (end + 1 < decades.size() && decades[end + 1].ranked.front().method == winner) ++end;
-        stretches.push_back(winner + (end == k ? " at " + power_of_ten(decades[k].exponent)
-                                               : " from " + power_of_ten(decades[k].exponent) + " to " +
-                                                     power_of_ten(decades[end].exponent)));
+        stretches += (k == 0 ? "" : "; ") + power_of_ten(decades[k].exponent) +
+                     (end == k ? "" : " to " + power_of_ten(decades[end].exponent)) + ": " + winner;
         k = end + 1;
     }
-    if (stretches.size() > 1)
-        text += "The cheapest by error: " + listed(stretches) + ". ";
-    else
-        text += decades.front().ranked.front().method + " is the cheapest at every error from " +
-                power_of_ten(decades.front().exponent) + " to " + power_of_ten(decades.back().exponent) +
-                ". ";
+    text += "The cheapest, by error: " + stretches + ". ";
 
     std::vector<std::string> alone;
     for (const Entry& entry : decades.back().ranked) alone.push_back(entry.method);
@@ -161,16 +184,22 @@ std::string error_conclusion(const StudyData& study) {
     return text + floors(study.lines);
 }
 
-/// Slope of log(seconds) over log(value), by least squares.
-double growth(const Line& line) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const Point& point : line.points) {
-        if (!(point.value > 0)) continue;
-        const double u = std::log(point.value), v = std::log(point.seconds);
-        n += 1, x += u, y += v, xx += u * u, xy += u * v;
+/// "sorted grid: build" and "sorted grid: query" are parts of one method: their times add up.
+std::vector<Line> sums_of_parts(const std::vector<Line>& lines) {
+    std::vector<Line> sums;
+    for (const Line& line : lines) {
+        const std::string method = line.method.substr(0, line.method.find(": "));
+        const auto found =
+            std::find_if(sums.begin(), sums.end(), [&](const Line& sum) { return sum.method == method; });
+        if (found == sums.end()) {
+            sums.push_back({method, line.points});
+            continue;
+        }
+        for (Point& total : found->points)
+            for (const Point& point : line.points)
+                if (point.value == total.value) total.seconds += point.seconds;
     }
-    const double spread = n * xx - x * x;
-    return spread > 0 ? (n * xy - x * y) / spread : kInfinity;
+    return sums;
 }
 
 std::string cost_conclusion(const StudyData& study) {
@@ -181,11 +210,11 @@ std::string cost_conclusion(const StudyData& study) {
             largest = std::max(largest, point.value);
             worst_error = std::max(worst_error, point.error);
         }
-        char text[32];
-        std::snprintf(text, sizeof text, "%.2f", growth(line));
-        if (std::isfinite(growth(line))) slopes.push_back(text + (" for " + line.method));
+        const double growth = slope(line.points, &Point::value, &Point::seconds);
+        if (std::isfinite(growth)) slopes.push_back(fixed(growth) + " (" + line.method + ")");
     }
-    const auto ranked = ranking(study.lines, [&](const Line& line) {
+    const std::vector<Line> methods = sums_of_parts(study.lines);
+    const auto ranked = ranking(methods, [&](const Line& line) {
         for (const Point& point : line.points)
             if (point.value == largest) return point.seconds;
         return kInfinity;
@@ -193,8 +222,10 @@ std::string cost_conclusion(const StudyData& study) {
     std::string text;
     if (ranked.size() > 1)
         text = "At " + study.parameter + " = " + format_number(largest) + ", " +
-               compared(ranked, "fastest", "faster") + ". ";
-    if (!slopes.empty()) text += "Time grows as a power of " + study.parameter + ": " + listed(slopes) + ". ";
+               compared(ranked, "fastest", "faster") +
+               (methods.size() < study.lines.size() ? " (parts added up). " : ". ");
+    if (!slopes.empty())
+        text += "Time grows as " + study.parameter + " to the power " + listed(slopes) + ". ";
     return text + "Largest error: " + format_number(worst_error) + ".";
 }
 
@@ -212,12 +243,37 @@ double seconds_for_error(const Line& line, double error) {
 }
 
 std::string conclusion(const StudyData& study) {
-    return study.error_against_time ? error_conclusion(study) : cost_conclusion(study);
+    const auto of = [](const StudyData& data) {
+        return data.error_against_time ? error_conclusion(data) : cost_conclusion(data);
+    };
+    if (!study.lines_are_cases) return of(study);
+    // "dam break, linear": methods are compared within their case, and cases with nothing.
+    std::vector<std::pair<std::string, StudyData>> cases;
+    for (const Line& line : study.lines) {
+        const std::size_t comma = line.method.find(", ");
+        const std::string name = line.method.substr(0, comma);
+        auto found =
+            std::find_if(cases.begin(), cases.end(), [&](const auto& one) { return one.first == name; });
+        if (found == cases.end()) {
+            found = cases.insert(found, {name, study});
+            found->second.lines.clear();
+        }
+        found->second.lines.push_back(
+            {comma == std::string::npos ? name : line.method.substr(comma + 2), line.points});
+    }
+    std::string text;
+    for (const auto& [name, data] : cases) {
+        std::string part = of(data);
+        while (!part.empty() && part.back() == ' ') part.pop_back();
+        text += (text.empty() ? "" : "\n") + (char(std::toupper(name[0])) + name.substr(1)) + ": " + part;
+    }
+    return text;
 }
 
 std::string conclusion(const StabilityData& data) {
-    std::string text;
+    std::vector<std::pair<std::string, std::vector<std::string>>> sentences;  // and the methods they hold for
     for (const MethodMap& map : data.maps) {
+        std::string text;
         double lowest = kInfinity, highest = 0, at = 0, tried = 0;
         int open = 0, never = 0;
         for (const Column& column : map.columns) {
@@ -235,13 +291,14 @@ std::string conclusion(const StabilityData& data) {
             lowest = std::min(lowest, ratio);
             highest = std::max(highest, ratio);
         }
-        text += map.method + ": ";
         if (highest > 0) {
             char range[64];
             std::snprintf(range, sizeof range, highest - lowest < 0.005 ? "%.2f" : "%.2f to %.2f", lowest,
                           highest);
             text += "the measured limit is " + std::string(range) + " of the theory's";
-            if (lowest < 0.985) text += ": at " + format_number(at) + " the theory promises too much";
+            if (lowest < 0.985)
+                text +=
+                    ": at " + data.stiffness + " = " + format_number(at) + " the theory promises too much";
             text += ". ";
         }
         if (open > 0)
@@ -249,8 +306,16 @@ std::string conclusion(const StabilityData& data) {
                     std::to_string(map.columns.size()) + " columns, up to " + format_number(tried) +
                     " times the theory's limit. ";
         if (never > 0) text += "No step tried was stable in " + std::to_string(never) + " columns. ";
+        const auto same = std::find_if(sentences.begin(), sentences.end(),
+                                       [&](const auto& sentence) { return sentence.first == text; });
+        if (same == sentences.end())
+            sentences.push_back({text, {map.method}});
+        else
+            same->second.push_back(map.method);
     }
-    return text;
+    std::string all;
+    for (const auto& [text, methods] : sentences) all += listed(methods) + ": " + text;
+    return all;
 }
 
 }  // namespace course::report

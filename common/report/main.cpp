@@ -25,6 +25,12 @@ std::string cells(const char* tag, const std::vector<std::string>& texts) {
     return html + "</tr>\n";
 }
 
+std::string paragraphs(const std::string& lines) {
+    std::string html;
+    for (char c : escape_html(lines)) html += c == '\n' ? "<br>" : std::string(1, c);
+    return html;
+}
+
 std::string percent(double share) {
     return format_number(std::round(1000 * share) / 10) + " %";
 }
@@ -66,7 +72,7 @@ std::string section(const Data& data, const fs::path& json, const std::string& l
     return "<h3 id=\"" + escape_html(o.chapter + "_" + o.name) + "\">" + escape_html(o.question) +
            "</h3>\n<figure class=\"wide\"><a href=\"" + link + ".svg\"><img src=\"" + link + ".svg\" alt=\"" +
            escape_html(o.question) + "\"></a></figure>\n<p class=\"conclusion\">" +
-           escape_html(conclusion(data)) + "</p>\n<p><code>" + escape_html(o.command) +
+           paragraphs(conclusion(data)) + "</p>\n<p><code>" + escape_html(o.command) +
            "</code> &middot; backend: " + escape_html(o.backend) + ", " + escape_html(o.device) +
            (o.quick ? " &middot; quick: few and small points" : "") + " &middot; <a href=\"" + link +
            ".csv\">CSV</a>, <a href=\"" + link +

@@ -45,6 +45,7 @@ StudyData load_study(const std::filesystem::path& file) {
                     json.at("error_kind"),
                     json.at("parameter"),
                     json.at("plot") == "error_against_time",
+                    json.at("lines_are_cases"),
                     {}};
     for (const auto& row : json.at("rows")) {
         const std::string method = row.at("method");

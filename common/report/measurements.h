@@ -29,6 +29,7 @@ struct StudyData {
     Origin origin;
     std::string error_kind, parameter;
     bool error_against_time = true;  ///< else time against the parameter
+    bool lines_are_cases = false;    ///< "CASE, METHOD": only methods of the same case compete
     std::vector<Line> lines;
 };
 

@@ -34,13 +34,6 @@ cuda_chapters() {  # those whose program launches kernels
     done
 }
 
-small_run() {  # options that keep a chapter's program short: a sanitizer makes it many times slower
-    case $1 in
-        05_*) echo --max-exponent 12 ;;
-        *) echo --particles 600 --steps 3 ;;
-    esac
-}
-
 register_report() {  # as the compiler told it during the build
     grep -E "ptxas info +: (Compiling|Used)|spill" "$results/build.log" | c++filt >"$results/registers.txt" || true
 }
@@ -70,9 +63,8 @@ gpu_check() {
         --timeout 120 --output-junit "$results/tests.xml"
     for chapter in $(cuda_chapters); do
         for tool in memcheck racecheck; do
-            # shellcheck disable=SC2046  # a list of options
             part "${tool}_$chapter" 60 compute-sanitizer --tool "$tool" --error-exitcode 1 \
-                "$gpu_build/bin/ch$chapter" $(small_run "$chapter") --out "$results/scratch"
+                "$gpu_build/bin/ch$chapter" --particles 600 --steps 3 --out "$results/scratch"
         done
     done
     rm -rf "$results/scratch"

@@ -28,10 +28,15 @@ report() {
     build_targets $(printf 'ch%s ' $chapters) course_report
     left_out | while read -r line; do say "not measured: $line"; done
 
-    # "chapter kind name", a line each.
-    local measurements=''
+    # "chapter kind name", a line each. What is measured no more leaves the report.
+    local measurements='' names json
     for chapter in $chapters; do
-        measurements+=$(measurements_of "$build" "$chapter" | sed "s/^/$chapter /")$'\n'
+        names=$(measurements_of "$build" "$chapter")
+        measurements+=$(sed "s/^/$chapter /" <<<"$names")$'\n'
+        for json in "$root/out/report/$chapter"/{study,stability}_*.json; do
+            kind=$(basename "$json" .json)
+            grep -qx "${kind%%_*} ${kind#*_}" <<<"$names" || rm -f "${json%.json}".*
+        done
     done
     measurements=$(grep . <<<"$measurements") || stop 1 "no chapter has a study"
     total=$(wc -l <<<"$measurements")

@@ -1,6 +1,8 @@
 // Chapter 01: the loop against formulas, the two layouts against each other, and what happens at the edges.
 #include "01_particle_loop/particle_loop.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,6 +15,7 @@
 #include "01_particle_loop/checks.h"
 #include "01_particle_loop/scenes.h"
 #include "01_particle_loop/splat.h"
+#include "01_particle_loop/studies.h"
 #include "tests/support/course_test.h"
 #include "tests/support/run_program.h"
 
@@ -353,6 +356,163 @@ TEST_CASE("a picture is bright at the jets, dark in the sky, and the same each t
 
 // ------------------------------------------------------------------------------------------------ the edges
 
+TEST_CASE("extremes: one droplet, and two, fly as droplets do") {
+    const Fountain fountain = make_scene("crown");
+    const std::uint32_t life = life_steps(fountain);
+    for (const std::uint32_t n : {1u, 2u}) {
+        const std::vector<Particle> particles = run(fountain, n, life + 100);
+        CHECK(born_after(fountain, n, life) == n);
+        for (std::uint32_t i = 0; i < n; ++i) {
+            // Droplet i starts in the step s with s n / L <= i < (s + 1) n / L.
+            const std::uint32_t born_in = (i + 1) * life / n - 1;
+            Particle alone;
+            emit(fountain, random_start(fountain.seed, i, 0), alone.position_m, alone.velocity_m_per_s);
+            for (std::uint32_t s = born_in + 1; s < life + 100; ++s)
+                move(fountain, alone.position_m, alone.velocity_m_per_s);
+            CHECK(std::memcmp(&alone, &particles[i], sizeof alone) == 0);
+        }
+    }
+}
+
+TEST_CASE("extremes: droplets at one point stay together, and are drawn as one bright spot") {
+    const Fountain fountain = make_scene("crown");
+    Particle alone{{0.5f, 1, 0.25f}, {1, 2, 3}};
+    std::vector<Particle> particles(1000, alone);
+    for (int s = 0; s < 300; ++s) {
+        move_all(particles, 1000, fountain);
+        move(fountain, alone.position_m, alone.velocity_m_per_s);
+    }
+    CHECK_NOTHROW(watch(particles, 1000, fountain, 299));
+    for (const Particle& p : particles) CHECK(std::memcmp(&p, &alone, sizeof p) == 0);
+    CHECK(picture(particles, 1000, 64, 48).rgb != picture(particles, 0, 64, 48).rgb);
+}
+
+TEST_CASE("extremes: a time step of 0, and one too small to be felt, change nothing") {
+    Fountain fountain = make_scene("crown");
+    for (const float dt_s : {0.0f, 1e-30f}) {
+        fountain.dt_s = dt_s;
+        const Particle start{{0.5f, 1, -2}, {1, 2, 3}};
+        Particle p = start;
+        for (int s = 0; s < 100; ++s) move(fountain, p.position_m, p.velocity_m_per_s);
+        CHECK(std::memcmp(&p, &start, sizeof p) == 0);
+        // So long a life that nobody is ever born in what can be counted; and no number overflows on the way.
+        CHECK(life_steps(fountain) == 0xffffffffu);
+        CHECK(born_after(fountain, 1000, 1000000) == 0);
+        CHECK(plan_step(fountain, 4294967295u, 4294967294u).last == 4294967295u);
+        CHECK_THROWS_AS(check(fountain), course::BadInput);
+    }
+    fountain.dt_s = kNaN;
+    CHECK(life_steps(fountain) == 1);
+}
+
+TEST_CASE("extremes: what can't go well is stopped, with its likely cause") {
+    struct Case {
+        std::string what, cause;
+        Fountain fountain = make_scene("crown");
+        Particle droplet{{0, 1, 0}, {1, 0, 0}};
+    };
+    Case fast{"1e6 m/s", "or that fast"}, huge_step{"dt 1e6 s", "is longer than a life of 1.85 s"},
+        thick_air{"drag 1e12", "is over the limit 2 / drag = 2e-12 s"},
+        trampoline{"restitution 2", "a restitution of 2 adds energy in each bounce"},
+        no_number{"restitution nan", "a number that is none"},
+        no_gravity{"gravity nan", "a number that is none"},
+        no_velocity{"velocity nan", "a number that is none"}, far{"born 10 km away", "started out there"};
+    fast.droplet.velocity_m_per_s.x = 1e6f;
+    huge_step.fountain.dt_s = 1e6f;
+    huge_step.fountain.drag_per_s = 0;
+    thick_air.fountain.drag_per_s = 1e12f;
+    trampoline.fountain.restitution = 2;
+    trampoline.fountain.drag_per_s = 0;  // with drag, a fall ends below g / k = 28 m/s: no bounce gets far
+    no_number.fountain.restitution = kNaN;
+    no_gravity.fountain.gravity_m_per_s2 = kNaN;
+    no_velocity.droplet.velocity_m_per_s.z = kNaN;
+    far.droplet.position_m.x = 1e4f;
+    for (const Case& c : {fast, huge_step, thick_air, trampoline, no_number, no_gravity, no_velocity, far}) {
+        CAPTURE(c.what);
+        std::vector<Particle> particles(3, c.droplet);
+        std::string last_words;
+        for (int s = 0; s < 20000 && last_words.empty(); ++s) try {
+                move_all(particles, 3, c.fountain);
+                watch(particles, 3, c.fountain, s);
+            } catch (const course::Unstable& error) {
+                last_words = error.what();
+            }
+        CHECK_MESSAGE(last_words.find("droplet 0 is at (") != std::string::npos, last_words);
+        CHECK_MESSAGE(last_words.find(c.cause) != std::string::npos, last_words);
+    }
+}
+
+TEST_CASE("extremes: a fountain with a number that is none, or one out of reach, is refused") {
+    for (const float bad : {kNaN, kInfinity, -kInfinity}) {
+        Fountain f[8];
+        for (Fountain& fountain : f) {
+            fountain = make_scene("crown");
+            CHECK_NOTHROW(check(fountain));
+        }
+        f[0].dt_s = f[1].gravity_m_per_s2 = f[2].drag_per_s = f[3].restitution = f[4].floor_grip = bad;
+        f[5].lifetime_s = f[6].spread_m_per_s = bad;
+        f[7].jet_m_per_s[14].z = bad;
+        for (const Fountain& fountain : f) CHECK_THROWS_AS(check(fountain), course::BadInput);
+        Fountain nozzle = make_scene("crown");
+        nozzle.nozzle_m.x = bad;
+        CHECK_THROWS_AS(check(nozzle), course::BadInput);
+    }
+    Fountain far = make_scene("crown"), no_life = far, jets = far;
+    far.nozzle_m.x = 1e4f;
+    no_life.lifetime_s = no_life.dt_s = 0;
+    jets.jet_count = 17;
+    for (const Fountain& fountain : {far, no_life, jets}) CHECK_THROWS_AS(check(fountain), course::BadInput);
+}
+
+TEST_CASE("extremes: far from the origin a float has no room for a small step") {
+    // At 1e4 m floats are 9.8e-4 m apart: 0.4 m/s * 1 ms is less than half of that, and is rounded away.
+    Fountain fountain = make_scene("crown");
+    fountain.gravity_m_per_s2 = fountain.drag_per_s = 0;
+    fountain.dt_s = 1e-3f;
+    Particle far{{1e4f, 1, 0}, {0.4f, 0, 0}}, near{{0, 1, 0}, {0.4f, 0, 0}};
+    for (int s = 0; s < 1000; ++s) {
+        move(fountain, far.position_m, far.velocity_m_per_s);
+        move(fountain, near.position_m, near.velocity_m_per_s);
+    }
+    CHECK(far.position_m.x == 1e4f);
+    // 1000 sums below 0.5 m, each rounded by up to 1.5e-8 m.
+    CHECK_FALSE(!(std::abs(near.position_m.x - 0.4) <= 1.5e-5));
+}
+
+TEST_CASE("extremes: restitution 0 lands, restitution 1 goes on bouncing as high as it fell") {
+    Fountain fountain = make_scene("crown");
+    fountain.drag_per_s = 0;
+    fountain.restitution = 0;
+    Particle wet{{0, 2, 0}, {0, 0, 0}};
+    for (int s = 0; s < 1000; ++s) move(fountain, wet.position_m, wet.velocity_m_per_s);
+    CHECK((wet.position_m.y == 0.0f && wet.velocity_m_per_s.y == 0.0f));
+
+    fountain.restitution = 1;
+    Particle ball{{0, 2, 0}, {0, 0, 0}};
+    float peak_m = 0;
+    for (int s = 0; s < 2500; ++s) {
+        move(fountain, ball.position_m, ball.velocity_m_per_s);
+        if (s > 2100) peak_m = std::max(peak_m, ball.position_m.y);  // more than one of the 1.28 s bounces
+    }
+    // A bounce comes up to one step late and is right on average; each of 8 can be off by g dt v = 0.25 J/kg,
+    // and 9.81 J/kg are a metre.
+    CHECK_FALSE(!(std::abs(peak_m - 2) <= 8 * 0.25 / 9.81));
+}
+
+TEST_CASE("extremes: the largest random number picks the last jet, not the one behind it") {
+    Fountain fountain;
+    for (int jets = 1; jets <= kMaxJets; ++jets) {
+        fountain.jet_count = jets;
+        fountain.jet_m_per_s[jets - 1] = {float(jets), 0, 0};
+        Uniforms most{};
+        most.u[0] = to_unit_interval(0xffffffffu);
+        for (int k = 1; k < 7; ++k) most.u[k] = 0.5f;  // no deviation
+        Particle p;
+        emit(fountain, most, p.position_m, p.velocity_m_per_s);
+        CHECK(p.velocity_m_per_s == glm::vec3(float(jets), 0, 0));
+    }
+}
+
 TEST_CASE("lost droplets are named") {
     Fountain fountain = make_scene("crown");
     for (const glm::vec3 where :
@@ -367,6 +527,11 @@ TEST_CASE("lost droplets are named") {
             CHECK(std::string(error.what()).find("step 3: droplet 6") == 0);
         }
     }
+    for (const glm::vec3 how_fast : {glm::vec3(0, kNaN, 0), glm::vec3(0, 0, -kInfinity)}) {
+        std::vector<Particle> particles(10);
+        particles[6].velocity_m_per_s = how_fast;  // the position is still a number
+        CHECK_THROWS_AS(watch(particles, 10, fountain, 3), course::Unstable);
+    }
 }
 
 TEST_CASE("bad input ends with exit code 2 and a sentence that names the value") {
@@ -378,9 +543,22 @@ TEST_CASE("bad input ends with exit code 2 and a sentence that names the value")
         {"--dt -0.1", "--dt must be"},
         {"--dt nan", "--dt must be"},
         {"--dt 1e30", "the time step must be"},
+        {"--dt 1e6", "the time step must be"},
         {"--dt 1e-9", "the time step must be"},
+        {"--dt 1e-30", "the time step must be"},
         {"--drag nan", "drag must be"},
+        {"--drag inf", "drag must be"},
+        {"--drag 1e12", "drag must be from 0 to 1000000 per second, not 1e+12"},
         {"--restitution 1.5", "restitution must be from 0 to 1, not 1.5"},
+        {"--restitution 2", "restitution must be"},
+        {"--restitution nan", "restitution must be"},
+        {"--width 0", "--width must be"},
+        {"--width -640", "--width must be"},
+        {"--width 15", "--width must be"},
+        {"--height 16385", "--height must be"},
+        {"--height 99999999999", "--height"},
+        {"--study weather", "weather"},
+        {"--stability weather", "weather"},
         {"--scene volcano", "there is no scene 'volcano'"},
         {"--window", "--window"},
         {"--out /proc/nothing", "/proc/nothing"},
@@ -408,14 +586,30 @@ TEST_CASE("an unstable run ends with exit code 3, says why, and leaves its resul
     CHECK(std::filesystem::exists(folder.path() / "start.png"));  // what there was until then
 }
 
-TEST_CASE("one droplet, no step, and --explain") {
+TEST_CASE("more droplets than the machine can hold: exit code 2, before anything is computed") {
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (memory > 2147483647.0 * sizeof(Particle)) course::skip("this machine can hold them");
+    const course::TemporaryFolder folder;
+    const course::ProgramRun run = course::run_program(
+        "ch01_particle_loop", "--particles 2147483647 --steps 1 --out " + folder.path().string());
+    CHECK(run.exit_code == 2);
+    CHECK_MESSAGE(run.output.find("GiB of memory") != std::string::npos, run.output);
+}
+
+TEST_CASE("one droplet, no step, the last of the scales, narrow pictures, and --explain") {
     const course::TemporaryFolder folder;
     const std::string out = " --out " + (folder.path() / "new").string();
     CHECK(course::run_program("ch01_particle_loop", "--explain" + out).exit_code == 0);
     CHECK_FALSE(std::filesystem::exists(folder.path() / "new"));  // explaining makes nothing
-    for (const char* arguments : {"--particles 1 --steps 3", "--particles 10 --steps 0"}) {
-        const course::ProgramRun run = course::run_program(
-            "ch01_particle_loop", std::string(arguments) + " --width 64 --height 64 --no-measure" + out);
+    for (const char* arguments :
+         {"--particles 1 --steps 3 --width 64 --height 64",
+          "--particles 2 --steps 500 --width 16 --height 16",
+          "--particles 10 --steps 0 --width 64 --height 64", "--particles 10 --width 4096 --height 16",
+          "--particles 10 --width 16 --height 4096",
+          "--particles 10 --drag 0 --restitution 0 --width 64 --height 64",
+          "--particles 10 --restitution 1 --width 64 --height 64",
+          "--particles 10 --dt 1.85 --steps 5 --width 64 --height 64"}) {
+        const course::ProgramRun run = course::run_program("ch01_particle_loop", arguments + out);
         CHECK_MESSAGE(run.exit_code == 0, run.output);
         CHECK(std::filesystem::exists(folder.path() / "new" / "fountain.png"));
     }
@@ -425,9 +619,9 @@ TEST_CASE("the same seed gives the same picture, another seed another") {
     const course::TemporaryFolder folder;
     const auto picture_of = [&](const std::string& seed, const std::string& name) {
         const std::filesystem::path out = folder.path() / name;
-        course::run_program("ch01_particle_loop",
-                            "--particles 500 --steps 100 --width 64 --height 64 --no-measure --seed " + seed +
-                                " --out " + out.string());
+        course::run_program(
+            "ch01_particle_loop",
+            "--particles 500 --steps 100 --width 64 --height 64 --seed " + seed + " --out " + out.string());
         std::ifstream file(out / "fountain.png", std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(file), {});
     };
@@ -435,4 +629,70 @@ TEST_CASE("the same seed gives the same picture, another seed another") {
     CHECK(first.size() > 100);
     CHECK(first == picture_of("7", "b"));
     CHECK(first != picture_of("8", "c"));
+}
+
+// ---------------------------------------------------------------------------------------------- the studies
+
+TEST_CASE("study time_step: first order, until rounding takes over; ever later in double") {
+    course::Study study({"time_step", "?", "m", "dt_s"}, "01_particle_loop", true);
+    study_time_step(study);
+    const auto error_m = [&](const std::string& method, int steps) {
+        for (const course::StudyRow& row : study.rows())
+            if (row.method == method && row.steps == steps) return row.error;
+        return double(kNaN);
+    };
+    // Halving dt twice quarters the error; the next term is of relative size k dt < 0.011, and at 512 steps
+    // of 1e-6 m rounding may reach 512 * 1e-6 of 0.012 m.
+    CHECK_FALSE(!(std::abs(error_m("near the ground, double", 32) / error_m("near the ground, double", 128) -
+                           4) <= 0.05));
+    CHECK_FALSE(!(
+        std::abs(error_m("near the ground, double", 8192) / error_m("near the ground, double", 32768) - 4) <=
+        1e-3));
+    CHECK_FALSE(!(
+        std::abs(error_m("near the ground, float", 32) / error_m("near the ground, float", 128) - 4) <= 0.2));
+    CHECK_FALSE(
+        !(error_m("near the ground, float", 524288) > 10 * error_m("near the ground, double", 524288)));
+    CHECK_FALSE(!(error_m("10 km up, float", 524288) > 10 * error_m("near the ground, float", 524288)));
+}
+
+TEST_CASE("move_in_double is move, but for rounding") {
+    const Fountain fountain = make_scene("crown");
+    Particle p{{0.5f, 2, 0.25f}, {1, 2, 3}};
+    glm::dvec3 x(p.position_m), v(p.velocity_m_per_s);
+    for (int s = 0; s < 100; ++s) {
+        move(fountain, p.position_m, p.velocity_m_per_s);
+        move_in_double(fountain, x, v);
+    }
+    // 100 roundings of a velocity below 4 m/s (1.2e-7) over 0.4 s, and of a position below 4 m (1.2e-7).
+    CHECK_FALSE(!(glm::distance(glm::dvec3(p.position_m), x) <= 100 * 3e-7));
+}
+
+TEST_CASE("study layout: both layouts give the same droplets and the same counts") {
+    course::Study study({"layout", "?", "droplets", "n"}, "01_particle_loop", true);
+    add_layouts(study, 1000);
+    CHECK(study.rows().size() == 4);
+    for (const course::StudyRow& row : study.rows()) CHECK(row.error == 0);
+}
+
+TEST_CASE("stability map drag: the limit is 2 / k, to one part in a hundred") {
+    for (const float drag : {0.35f, 35.0f, 3500.0f, 35000.0f}) {
+        CHECK(drag_is_stable(drag, 0.99f * 2 / drag));
+        CHECK_FALSE(drag_is_stable(drag, 1.01f * 2 / drag));
+        CHECK_FALSE(drag_is_stable(drag, 1e6f));  // to infinity, and on to NaN
+    }
+}
+
+TEST_CASE("the program lists its studies, and writes a stability map as CSV and for the report") {
+    const course::TemporaryFolder folder;
+    const std::string list = course::run_program("ch01_particle_loop", "--list-studies").output;
+    for (const char* name : {"study time_step:", "study layout:", "stability drag:"})
+        CHECK_MESSAGE(list.find(name) != std::string::npos, list);
+    const course::ProgramRun run =
+        course::run_program("ch01_particle_loop", "--stability drag --quick --out " + folder.path().string());
+    CHECK(run.exit_code == 0);
+    CHECK(std::filesystem::exists(folder.path() / "stability_drag.json"));
+    std::ifstream file(folder.path() / "stability_drag.csv");
+    std::string header;
+    std::getline(file, header);
+    CHECK(header == "stability,method,dt,stiffness,stable,measured_limit,theory_limit");
 }

@@ -2,6 +2,8 @@
 // launches look like.
 #include "03_first_kernels/first_kernels.cuh"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -11,7 +13,7 @@
 #include "01_particle_loop/scenes.h"
 #include "03_first_kernels/device_fountain.cuh"
 #include "03_first_kernels/mistakes.cuh"
-#include "03_first_kernels/parity.h"
+#include "03_first_kernels/studies.cuh"
 #include "tests/support/course_test.h"
 #include "tests/support/run_program.h"
 #ifdef __CUDASIM__
@@ -129,7 +131,7 @@ TEST_CASE("one step from the same state differs by roundings only") {
 
 TEST_CASE("the three layouts agree with the host's loop, whatever the number of droplets") {
     for (const char* scene : {"crown", "spray"})
-        for (const std::uint32_t n : {1u, 31u, 255u, 256u, 257u, 3001u}) {
+        for (const std::uint32_t n : {1u, 2u, 31u, 255u, 256u, 257u, 3001u}) {
             const Fountain fountain = make_scene(scene);
             const std::uint32_t steps =
                 300 + n % 200;  // in the first life for some, in the second for others
@@ -280,6 +282,134 @@ TEST_CASE("a missing guard: the simulator stops the program and names the kernel
 
 // ------------------------------------------------------------------------------------------------ the edges
 
+namespace {
+
+/// A droplet and a fountain that no scene has.
+struct Extreme {
+    std::string what;
+    Fountain fountain = make_scene("crown");
+    Particle droplet{{0.5f, 1, -2}, {1, 2, 3}};
+};
+
+std::vector<Extreme> extremes() {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<Extreme> all;
+    const auto add = [&](const std::string& what, auto&& change) {
+        all.push_back({what});
+        change(all.back().fountain, all.back().droplet);
+    };
+    add("nothing", [](Fountain&, Particle&) {});
+    add("1e6 m/s", [](Fountain&, Particle& p) { p.velocity_m_per_s = {1e6f, 1e6f, -1e6f}; });
+    add("dt 0", [](Fountain& f, Particle&) { f.dt_s = 0; });
+    add("dt 1e-30", [](Fountain& f, Particle&) { f.dt_s = 1e-30f; });
+    add("dt 1e6", [](Fountain& f, Particle&) { f.dt_s = 1e6f; });
+    add("drag 0", [](Fountain& f, Particle&) { f.drag_per_s = 0; });
+    add("drag 1e12", [](Fountain& f, Particle&) { f.drag_per_s = 1e12f; });
+    add("10 km away", [](Fountain&, Particle& p) { p.position_m.x = 1e4f; });
+    add("position nan", [=](Fountain&, Particle& p) { p.position_m.y = nan; });
+    add("velocity nan", [=](Fountain&, Particle& p) { p.velocity_m_per_s.z = nan; });
+    add("gravity nan", [=](Fountain& f, Particle&) { f.gravity_m_per_s2 = nan; });
+    for (const float restitution : {0.0f, 1.0f, 2.0f, nan})
+        add("restitution " + std::to_string(restitution), [=](Fountain& f, Particle& p) {
+            f.restitution = restitution;
+            p.position_m.y = 0.01f;  // 30 mm below the floor after the step
+            p.velocity_m_per_s.y = -10;
+        });
+    return all;
+}
+
+bool is_number(const Particle& p) {
+    return std::isfinite(glm::dot(p.position_m, p.position_m)) &&
+           std::isfinite(glm::dot(p.velocity_m_per_s, p.velocity_m_per_s));
+}
+
+/// Both no number or the same infinity, or as near as roundings of the largest number involved bring them.
+bool same_but_rounding(glm::vec3 a, glm::vec3 b) {
+    const float largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), 10.0f});
+    for (int k = 0; k < 3; ++k) {
+        if (std::isnan(a[k]) && std::isnan(b[k])) continue;
+        if (a[k] != b[k] && !(std::abs(a[k] - b[k]) <= 5e-7f * largest))
+            return false;  // 4 roundings of 1.2e-7
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("extremes: a step on the device does what the host's does, in each layout") {
+    for (const Extreme& e : extremes()) {
+        CAPTURE(e.what);
+        const std::uint32_t life = life_steps(e.fountain);  // 2^32 - 1 for a time step of 0
+        const std::uint32_t s = life == 0xffffffffu ? 0 : life;
+        std::vector<Particle> host(300, e.droplet);
+        StructsOnDevice structs(host);
+        ArraysOnDevice arrays(host);
+        Float4OnDevice float4s(host);
+        step(host, e.fountain, s);
+        structs.step(e.fountain, s);
+        arrays.step(e.fountain, s);
+        float4s.step(e.fountain, s);
+        for (const auto& device : {structs.download(), arrays.download(), float4s.download()}) {
+            int different = 0;
+            for (std::size_t i = 0; i < host.size(); ++i)
+                different += !same_but_rounding(device[i].position_m, host[i].position_m) ||
+                             !same_but_rounding(device[i].velocity_m_per_s, host[i].velocity_m_per_s);
+            CHECK(different == 0);
+        }
+    }
+}
+
+TEST_CASE("extremes: a droplet on the device stays a number, or is named") {
+    // One droplet, and so many steps a life that it never starts again: what goes wrong has the time to.
+    for (Extreme e : extremes()) {
+        CAPTURE(e.what);
+        if (e.what == "restitution 2.000000") e.fountain.drag_per_s = 0;  // or falls end at g / k = 28 m/s
+        const bool fine = e.what == "nothing" || e.what == "dt 0" || e.what == "dt 1e-30" ||
+                          e.what == "drag 0" || e.what == "restitution 0.000000" ||
+                          e.what == "restitution 1.000000";
+        Float4OnDevice state(std::vector<Particle>{e.droplet});
+        std::string last_words;
+        e.fountain.lifetime_s = e.fountain.dt_s * 1e9f;
+        const std::uint32_t first = e.fountain.dt_s > 0 ? life_steps(e.fountain) : 0;
+        for (std::uint32_t s = 0; s < 10000 && last_words.empty(); ++s) {
+            state.step(e.fountain, first + s);
+            if (s % 50 != 49) continue;
+            const std::vector<Particle> now = state.download();
+            try {
+                watch(now, 1, e.fountain, int(s));
+                CHECK(is_number(now[0]));
+            } catch (const course::Unstable& error) {
+                last_words = error.what();
+            }
+        }
+        CHECK_MESSAGE(last_words.empty() == fine, last_words);
+        if (!fine) CHECK_MESSAGE(last_words.find("droplet 0 is at (") != std::string::npos, last_words);
+    }
+}
+
+TEST_CASE("extremes: no droplets at all, in each layout") {
+    const Fountain fountain = make_scene("crown");
+    const std::vector<Particle> none;
+    StructsOnDevice structs(none);
+    ArraysOnDevice arrays(none);
+    Float4OnDevice float4s(none);
+    structs.step(fountain, 0);
+    arrays.step(fountain, 0);
+    float4s.step(fountain, 0);
+    CHECK((structs.download().empty() && arrays.download().empty() && float4s.download().empty()));
+    CHECK(cudaGetLastError() == cudaSuccess);
+}
+
+TEST_CASE("more droplets than the machine can hold: exit code 2, before anything is computed") {
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (memory > 2147483647.0 * 136) course::skip("this machine can hold them");
+    const course::TemporaryFolder folder;
+    const course::ProgramRun run = course::run_program(
+        "ch03_first_kernels", "--particles 2147483647 --steps 1 --out " + folder.path().string());
+    CHECK(run.exit_code == 2);
+    CHECK_MESSAGE(run.output.find("GiB of memory") != std::string::npos, run.output);
+}
+
 TEST_CASE("bad input ends with exit code 2, an unstable run with 3") {
     const course::TemporaryFolder folder;
     const auto run = [&](const std::string& arguments) {
@@ -288,16 +418,74 @@ TEST_CASE("bad input ends with exit code 2, an unstable run with 3") {
     CHECK(run("--particles 0").exit_code == 2);
     CHECK(run("--block 0").exit_code == 2);
     CHECK(run("--block 1025").output.find("from 1 to 1024 threads, not 1025") != std::string::npos);
-    CHECK(run("--dt nan").exit_code == 2);
+    for (const char* arguments : {"--dt nan", "--dt 1e-30", "--dt 1e6", "--drag nan", "--drag 1e12",
+                                  "--width 0", "--height 16385", "--study weather", "--stability weather"})
+        CHECK_MESSAGE(run(arguments).exit_code == 2, arguments);
     CHECK(run("--mistake spelling").exit_code == 2);
     CHECK(run("--window").exit_code == 2);
     const course::ProgramRun unstable = run("--particles 100 --drag 50 --dt 0.1");
     CHECK(unstable.exit_code == 3);
     CHECK(unstable.output.find("over the limit 2 / drag = 0.04 s") != std::string::npos);
     CHECK(std::filesystem::exists(folder.path() / "result.json"));
-    for (const char* arguments : {"--particles 1 --steps 2", "--particles 300 --steps 0"}) {
-        const course::ProgramRun small = run(std::string(arguments) + " --no-measure --width 64 --height 64");
+    // By the time somebody looks, after 50 steps, the numbers are none any more.
+    const course::ProgramRun late = run("--particles 100 --drag 900000 --dt 0.004");
+    CHECK(late.exit_code == 3);
+    CHECK_MESSAGE(late.output.find("step 49: droplet 0") != std::string::npos, late.output);
+    CHECK(late.output.find("over the limit 2 / drag") != std::string::npos);
+    for (const char* arguments : {"--particles 1 --steps 2 --width 64 --height 64",
+                                  "--particles 2 --steps 500 --width 16 --height 16",
+                                  "--particles 300 --steps 0 --width 64 --height 64",
+                                  "--particles 300 --drag 0 --steps 50 --width 2048 --height 16"}) {
+        const course::ProgramRun small = run(arguments);
         CHECK_MESSAGE(small.exit_code == 0, small.output);
         CHECK(std::filesystem::exists(folder.path() / "fountain.png"));
     }
+}
+
+// ---------------------------------------------------------------------------------------------- the studies
+
+TEST_CASE("study layout: a life on the device ends where the host's does") {
+    course::Study study({"layout", "?", "m", "n"}, "03_first_kernels", true);
+    add_layouts(study, make_scene("crown"), 1000);
+    REQUIRE(study.rows().size() == 4);
+    for (const course::StudyRow& row : study.rows()) CHECK_FALSE(!(row.error <= kRoundingBound_m));
+    // And a wrong answer would not pass: another fountain's droplets are somewhere else.
+    const std::vector<Particle> crown = run_on_host(make_scene("crown"), 1000, 600);
+    CHECK_FALSE(!(parity_error_m(crown, run_float4(make_scene("spray"), 1000, 600)) > 0.1));
+}
+
+TEST_CASE("study copies: a state that travels stays what it was") {
+    const Fountain fountain = make_scene("crown");
+    const std::vector<Particle> start = at_the_nozzle(fountain, 1000);
+    for (const Copies copies : {Copies::none, Copies::to_host, Copies::there_and_back}) {
+        Float4OnDevice travels(start), stays(start);
+        std::vector<std::vector<float4>> host{travels.position.download(), travels.velocity.download()};
+        for (std::uint32_t s = 500; s < 520; ++s) {
+            step_with_copies(travels, host, copies, fountain, s);
+            stays.step(fountain, s);
+        }
+        CHECK(different_elements(travels, stays) == 0);
+        stays.step(fountain, 520);
+        CHECK(different_elements(travels, stays) > 1000);
+    }
+}
+
+TEST_CASE("stability map drag: on the device, too, the limit is 2 / k") {
+    for (const float drag : {0.35f, 350.0f, 35000.0f}) {
+        CHECK(drag_is_stable_on_device(drag, 0.99f * 2 / drag));
+        CHECK_FALSE(drag_is_stable_on_device(drag, 1.01f * 2 / drag));
+        CHECK_FALSE(drag_is_stable_on_device(drag, 1e4f * 2 / drag));  // to infinity, and on to NaN
+    }
+}
+
+TEST_CASE("the program's studies and its stability map say where their kernels ran") {
+    const course::TemporaryFolder folder;
+    const std::string out = " --quick --out " + folder.path().string();
+    const std::string backend = course::on_simulator() ? "simulator" : "cuda";
+    const course::ProgramRun copies = course::run_program("ch03_first_kernels", "--study copies" + out);
+    CHECK_MESSAGE(copies.exit_code == 0, copies.output);
+    CHECK_MESSAGE(copies.output.find("Times: " + backend) != std::string::npos, copies.output);
+    CHECK(course::run_program("ch03_first_kernels", "--stability drag" + out).exit_code == 0);
+    CHECK(std::filesystem::exists(folder.path() / "study_copies.csv"));
+    CHECK(std::filesystem::exists(folder.path() / "stability_drag.csv"));
 }

@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 
-#include "05_spatial_grid/bounds.cuh"
 #include "05_spatial_grid/costs.h"
-#include "05_spatial_grid/measure.cuh"
-#include "05_spatial_grid/neighbours.cuh"
-#include "05_spatial_grid/sorted_grid.cuh"
+#include "05_spatial_grid/studies.cuh"
 #include "tests/support/course_test.h"
 #include "tests/support/run_program.h"
 #ifdef __CUDASIM__
@@ -350,26 +348,72 @@ TEST_CASE("the fp32 trap does not exist for our edge: half a million close pairs
         }
 }
 
-TEST_CASE("scan agrees with the CPU at every awkward length") {
-    std::mt19937 random(2);
-    for (std::uint32_t n : {1u, 2u, 63u, 64u, 65u, 4095u, 4096u, 4097u, 64u * 64u * 64u, 300000u}) {
-        std::vector<std::uint32_t> values(n);
-        for (auto& v : values) v = random() % 5;
-        course::DeviceBuffer<std::uint32_t> device(values);
-        grid::ExclusiveScan scan(n);
-        scan(device.data(), n);
-        grid::exclusive_scan_cpu(values);
-        course::check_equal(device.download(), values, "prefix sum", "element");
+TEST_CASE("none, one and two particles; two at the same place") {
+    const Counts none = count_all({}, CellGrid{}, 1.0f);
+    CHECK(none.coherent.empty());
+    const float4 here = make_float4(3, -4, 5, 0), near = make_float4(3.05f, -4, 5, 0),
+                 far = make_float4(9, 9, 9, 0);
+    for (const std::vector<float4>& cloud :
+         {std::vector<float4>{here}, {here, near}, {here, far}, {here, here}, {here, here, far, far, far}})
+        check_against_reference(cloud, grid_around(cloud, 0.1f), 0.1f);
+    // By hand, too: coincident particles are neighbours, and nobody is its own.
+    CHECK(count_all({here, here}, grid_around({here, here}, 0.1f), 0.1f).coherent ==
+          std::vector<std::uint32_t>{1, 1});
+    CHECK(count_all({here, far}, grid_around({here, far}, 0.1f), 0.1f).coherent ==
+          std::vector<std::uint32_t>{0, 0});
+}
+
+TEST_CASE("10 km from the origin: fewer digits, the same answer as all pairs") {
+    course::set_seed(13);
+    // Floats stand 1 mm apart there: points and distances are coarse, but coarse alike for every method.
+    for (const glm::vec3 corner : {glm::vec3(1e4f), glm::vec3(-1e4f, 1e4f, 0), glm::vec3(1e6f)}) {
+        const std::vector<float4> cloud = random_cloud(3000, corner, corner + 1.0f, 13);
+        check_against_reference(cloud, grid_around(cloud, 0.125f), 0.125f);
     }
 }
 
-TEST_CASE("bounds agree with the CPU") {
-    for (std::size_t n : {1, 63, 2048, 5000}) {
-        const auto cloud = random_cloud(n, {-5, 1e-30f, -1e30f}, {-1, 2e-30f, 1e30f}, 4);
-        course::DeviceBuffer<float4> x(cloud);
-        const grid::Bounds box = grid::find_bounds(x.data(), n), expected = grid::bounds_cpu(cloud);
-        CHECK(box.low_m == expected.low_m);
-        CHECK(box.high_m == expected.high_m);
+TEST_CASE("a box thinner than the radius: a sheet, a thread") {
+    course::set_seed(14);
+    for (const glm::vec3 size : {glm::vec3(3, 1e-3f, 3), glm::vec3(5, 1e-3f, 1e-4f), glm::vec3(1e-3f)}) {
+        const std::vector<float4> cloud = random_cloud(2000, glm::vec3(0), size, 14);
+        const CellGrid cells = grid_around(cloud, 0.1f);
+        CHECK(cells.size.y == 1);
+        check_against_reference(cloud, cells, 0.1f);
+    }
+}
+
+TEST_CASE("the four methods of the program agree, and a wrong one is counted") {
+    for (const std::uint32_t n : {1u, 2u, 129u, 3000u}) {
+        const std::vector<float4> points = grid::random_cloud(n, 3);
+        grid::Cloud cloud(points, grid::radius_for_30(n));
+        const std::vector<std::uint32_t> expected = grid::count_neighbours_cpu(points, cloud.radius_m);
+        for (const grid::Method& method : grid::methods(cloud)) {
+            method.build();
+            method.query();
+            course::check_equal(method.counts(), expected, "neighbours by " + method.name);
+        }
+    }
+    CHECK(grid::different_counts({1, 2, 3}, {1, 2, 3}) == 0);
+    CHECK(grid::different_counts({1, 2, 3}, {2, 2}) == 1);  // the third was not asked
+    // Brute force: all particles where that is bearable, else whole blocks.
+    CHECK(grid::asked_of_brute_force(1) == 1);
+    CHECK(grid::asked_of_brute_force(1u << 15) == 1u << 15);
+    CHECK(grid::asked_of_brute_force(1u << 18) == 1u << 12);
+}
+
+TEST_CASE("crowding: all in one cell, and evenly spread") {
+    const float radius_m = grid::radius_for_30(500);
+    for (const grid::Crowd& crowd : grid::crowds(500, 1, radius_m)) {
+        grid::Cloud cloud(crowd.position, radius_m);
+        const auto neighbours = grid::count_neighbours_cpu(crowd.position, radius_m);
+        const grid::Crowding c = grid::crowding_of(crowd.position, cloud.cells, neighbours);
+        CHECK(c.candidates_each >= c.neighbours_each + 1);  // candidates are neighbours, itself, and others
+        if (crowd.name == "one cell") {
+            CHECK(c.fullest == 500);
+            CHECK(c.candidates_each == doctest::Approx(500));  // a sum of 500 shares, each rounded
+        } else {
+            CHECK(c.fullest < 500);
+        }
     }
 }
 
@@ -450,14 +494,10 @@ TEST_CASE("what --explain says is what happens: launches and bytes of each metho
 }
 
 TEST_CASE("a method that misses a neighbour stops the program") {
-    CHECK_NOTHROW(grid::check_same({1, 2, 3}, {1, 2, 4}, 2, "brute force"));  // the third was not asked
-    try {
-        grid::check_same({1, 2, 3}, {1, 2, 4}, 3, "brute force");
-        FAIL("not noticed");
-    } catch (const std::runtime_error& error) {
-        CHECK(std::string(error.what()) ==
-              "brute force finds 3 neighbours of particle 2, the counting sort 4");
-    }
+    CHECK_NOTHROW(
+        grid::check_same({1, 2, 3}, {1, 2}, "the grid"));  // brute force was not asked for the third
+    CHECK_THROWS_WITH_AS(grid::check_same({1, 2, 4}, {1, 2, 3}, "the grid"),
+                         "the grid finds 4 neighbours of particle 2, brute force 3", std::runtime_error);
 }
 
 TEST_CASE("the program: bad input ends with exit code 2 and a sentence; extremes work") {
@@ -467,9 +507,7 @@ TEST_CASE("the program: bad input ends with exit code 2 and a sentence; extremes
     };
     const struct {
         const char *arguments, *sentence;
-    } bad[] = {{"--max-exponent 11", "--max-exponent must be from 12 to 24, not 11"},
-               {"--max-exponent 25", "--max-exponent must be from 12 to 24, not 25"},
-               {"--particles 0", "--particles must be"},
+    } bad[] = {{"--particles 0", "--particles must be"},
                {"--particles 16777217", "--particles must be from 1 to 16777216"},
                {"--window", "--window: this chapter draws pictures only"}};
     for (const auto& c : bad) {
@@ -484,11 +522,27 @@ TEST_CASE("the program: bad input ends with exit code 2 and a sentence; extremes
     CHECK_FALSE(std::filesystem::exists(out));  // explaining makes nothing
     for (const char* arguments :
          {"--particles 1 --width 16 --height 16", "--particles 2", "--particles 20000"}) {
-        const course::ProgramRun ended = run(std::string(arguments) + " --max-exponent 12");
+        const course::ProgramRun ended = run(arguments);
         CHECK_MESSAGE(ended.exit_code == 0, ended.output);
         CHECK(ended.output.find("the error is 0") != std::string::npos);
-        for (const char* file : {"search.png", "times.png", "result.json"})
+        for (const char* file : {"search.png", "result.json"})
             CHECK_MESSAGE(std::filesystem::file_size(out / file) > 0, file);
     }
     std::filesystem::remove_all(out);
+}
+
+TEST_CASE("the studies run and find no wrong count") {
+    const course::TemporaryFolder folder;
+    for (const char* study : {"neighbours", "occupancy"}) {
+        const course::ProgramRun ended =
+            course::run_program("ch05_spatial_grid",
+                                std::string("--quick --study ") + study + " --out " + folder.path().string());
+        CHECK_MESSAGE(ended.exit_code == 0, ended.output);
+        std::ifstream csv(folder.path() / (std::string("study_") + study + ".csv"));
+        std::string line;
+        int rows = 0;
+        for (std::getline(csv, line); std::getline(csv, line); ++rows)
+            CHECK_MESSAGE(line.find(",0,particles whose number") != std::string::npos, line);
+        CHECK(rows >= 3 * 7);  // three clouds or more, seven rows each
+    }
 }

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "01_particle_loop/scenes.h"
-#include "06_gl_interop/fountain_scene.cuh"
+#include "06_gl_interop/studies.cuh"
 #include "common/gl_window.h"
 #include "tests/chapters/06_gl_interop_support.h"
 #ifdef __CUDASIM__
@@ -217,7 +217,40 @@ TEST_CASE("spheres: a position that is not a number draws nothing") {
     for (const float depth : surface.depth) REQUIRE(depth == 1);
 }
 
-// ----------------------------------------------------------------------------------------------- pictures
+TEST_CASE("spheres: many triangles come to the impostor, few do not") {
+    const auto context = context_or_skip();
+    const course::GlBuffer position = buffer_of({{0.4f, -0.2f, -3, 0}});
+    const auto surface_of = [&](int rings) {
+        Look look = bare_spheres();
+        look.mesh_rings = rings;
+        ParticleRenderer renderer(160, 120, look);
+        renderer.draw(position, nullptr, 1, 0.9f, wide_camera());
+        return Surface(renderer.surface());
+    };
+    const Surface exact = surface_of(0);
+    const auto compare = [&](const Surface& mesh, int& other_cover, double& worst_normal) {
+        other_cover = 0, worst_normal = 0;
+        for (std::size_t k = 0; k < mesh.depth.size(); ++k) {
+            if ((mesh.depth[k] < 1) != (exact.depth[k] < 1))
+                ++other_cover;
+            else if (mesh.depth[k] < 1)
+                worst_normal = std::max<double>(
+                    worst_normal,
+                    glm::distance(glm::vec3(mesh.normal_speed[k]), glm::vec3(exact.normal_speed[k])));
+        }
+    };
+    int other_cover = 0;
+    double worst_normal = 0;
+    // 64 rings: a corner every 2.8 degrees. The outline lies up to 1 - cos(1.4 degrees) = 3e-4 of the radius
+    // inside, 0.01 pixels; a point of it is off by 2.5e-2 of a normal at most.
+    compare(surface_of(64), other_cover, worst_normal);
+    CHECK(other_cover <= 4);
+    CHECK_FALSE(!(worst_normal <= 0.03));
+    compare(surface_of(2), other_cover, worst_normal);
+    CHECK(other_cover > 100);
+}
+
+// ----------------------------------------------------------------------------------------------- extremes
 
 namespace {
 
@@ -230,6 +263,101 @@ double brightness(const course::Image& image, int x, int y) {
     }
     return sum;
 }
+
+/// The picture of some particles, as spheres with all that belongs to them, or as points.
+course::Image extreme_picture(Drawing drawing, const std::vector<glm::vec4>& position,
+                              const std::vector<glm::vec4>& velocity, float radius_m = 0.3f,
+                              glm::vec3 origin_m = {0, 0, 0}) {
+    Camera camera;
+    camera.eye_m = origin_m + glm::vec3(0.5f, 1, 4);
+    camera.target_m = origin_m;
+    Look look = interop::fountain_look(drawing);
+    look.region = {origin_m - glm::vec3(1), origin_m + glm::vec3(1)};
+    ParticleRenderer renderer(120, 90, look);
+    const course::GlBuffer positions = buffer_of(position), velocities = buffer_of(velocity);
+    renderer.draw(positions, &velocities, position.size(), radius_m, camera);
+    return renderer.image();
+}
+
+}  // namespace
+
+TEST_CASE("extremes: a thousand particles at one point look like one") {
+    const auto context = context_or_skip();
+    const glm::vec4 x(0.1f, 0.2f, 0.3f, 0), v(1, 2, 3, 0);
+    for (const Drawing drawing : {Drawing::spheres, Drawing::points}) {
+        const course::Image one = extreme_picture(drawing, {x}, {v});
+        CHECK(
+            extreme_picture(drawing, std::vector<glm::vec4>(1000, x), std::vector<glm::vec4>(1000, v)).rgb ==
+            one.rgb);
+        CHECK(extreme_picture(drawing, {x, x}, {v, v}).rgb == one.rgb);
+        CHECK(extreme_picture(drawing, {x}, {v}, 0.0f).rgb.size() == one.rgb.size());  // a point, or nothing
+    }
+}
+
+TEST_CASE("extremes: a speed beyond all measure has the last colour, one that is no number the first") {
+    const auto context = context_or_skip();
+    const glm::vec4 x(0.1f, 0.2f, 0.3f, 0);
+    const float nan = std::nanf("");
+    for (const Drawing drawing : {Drawing::spheres, Drawing::points}) {
+        const course::Image rest = extreme_picture(drawing, {x}, {{0, 0, 0, 0}});
+        const course::Image fast = extreme_picture(drawing, {x}, {{100, 0, 0, 0}});  // the top is 7 m/s
+        CHECK(rest.rgb != fast.rgb);
+        CHECK(extreme_picture(drawing, {x}, {{1e6f, -1e6f, 1e6f, 0}}).rgb == fast.rgb);
+        CHECK(extreme_picture(drawing, {x}, {{1e30f, 0, 0, 0}}).rgb == fast.rgb);  // its length: infinity
+        CHECK(extreme_picture(drawing, {x}, {{nan, 0, 0, 0}}).rgb == rest.rgb);
+    }
+}
+
+TEST_CASE("extremes: particles out of reach, or nowhere, leave the picture as it is without them") {
+    const auto context = context_or_skip();
+    const float nan = std::nanf("");
+    const glm::vec4 v(1, 0, 0, 0);
+    for (const Drawing drawing : {Drawing::spheres, Drawing::points}) {
+        const course::Image none = extreme_picture(drawing, {{0, 0, 100, 0}}, {v});  // behind the eye
+        for (const glm::vec4 x : {glm::vec4(nan, 0, 0, 0), glm::vec4(0, INFINITY, 0, 0),
+                                  glm::vec4(0, 0, -INFINITY, 0), glm::vec4(1e30f, 0, 0, 0), glm::vec4(nan)})
+            CHECK(extreme_picture(drawing, {x}, {v}).rgb == none.rgb);
+    }
+}
+
+TEST_CASE("extremes: 10 km from the origin the picture is the same, but for a hundredth of a pixel") {
+    const auto context = context_or_skip();
+    // Floats there are 1 mm apart, and the camera multiplies them before it subtracts: some mm, of a pixel of
+    // 4 cm at 4 m. Pixels through which an outline or a line of the floor goes may change, and only those.
+    const glm::vec3 origin_m(1e4f, 0, 1e4f);
+    const course::Image here = extreme_picture(Drawing::spheres, {{0, 0, 0, 0}}, {{1, 0, 0, 0}});
+    const course::Image far =
+        extreme_picture(Drawing::spheres, {glm::vec4(origin_m, 0)}, {{1, 0, 0, 0}}, 0.3f, origin_m);
+    int changed = 0, sphere = 0;
+    const course::Image empty = extreme_picture(Drawing::spheres, {{0, 0, 100, 0}}, {{1, 0, 0, 0}});
+    for (int y = 0; y < here.height; ++y)
+        for (int x = 0; x < here.width; ++x) {
+            sphere += brightness(here, x, y) != brightness(empty, x, y);
+            changed += std::abs(brightness(here, x, y) - brightness(far, x, y)) > 0.1;
+        }
+    CHECK(sphere > 200);
+    CHECK(changed <= sphere / 10);
+}
+
+TEST_CASE("extremes: one droplet and two are handed over and drawn; none is an error that says so") {
+    const auto context = context_or_skip();
+    const particle_loop::Fountain scene = particle_loop::make_scene("crown");
+    for (const Handover handover : {Handover::shared, Handover::copied}) {
+        CHECK_THROWS_AS(SharedFountain(0, scene, handover), course::BadInput);
+        for (const std::uint32_t n : {1u, 2u}) {
+            CAPTURE(n);
+            SharedFountain fountain(n, scene, handover);
+            interop::grow(fountain, scene);
+            CHECK(fountain.born() == n);
+            ParticleRenderer renderer(32, 32, interop::fountain_look(Drawing::spheres));
+            CHECK_NOTHROW(interop::draw(renderer, fountain, interop::first_view().camera()));
+        }
+    }
+}
+
+// ----------------------------------------------------------------------------------------------- pictures
+
+namespace {
 
 /// Pixel (x, y from the top) that shows world point p.
 glm::ivec2 pixel_of(glm::vec3 p, const Camera& camera, int width, int height) {
@@ -591,6 +719,42 @@ TEST_CASE("--explain tells the truth: launches, device memory and OpenGL buffers
 }
 #endif
 
+// ---------------------------------------------------------------------------------------------- the studies
+
+TEST_CASE("study spheres: more rays come nearer to the picture, few triangles do not") {
+    const auto context = context_or_skip();
+    const particle_loop::Fountain scene = particle_loop::make_scene("crown");
+    SharedFountain fountain(500, scene);
+    interop::grow(fountain, scene);
+    interop::SpherePicture picture;
+    picture.width_px = 160, picture.height_px = 90;
+    const auto draw = [&](int samples, int rings) {
+        picture.look.samples_per_axis = samples;
+        picture.look.mesh_rings = rings;
+        ParticleRenderer renderer = picture.renderer();
+        picture.draw(renderer, fountain);
+        return renderer.image();
+    };
+    const course::Image reference = draw(6, 0);
+    CHECK(interop::difference(reference, reference) == 0);
+    const double one = interop::difference(draw(1, 0), reference),
+                 four = interop::difference(draw(2, 0), reference),
+                 nine = interop::difference(draw(3, 0), reference),
+                 coarse = interop::difference(draw(3, 2), reference);
+    // A mean of k rays spread evenly: the error falls at least as 1 / sqrt(k), by 2 and by 1.5.
+    CHECK_FALSE(!(four < one / 2));
+    CHECK_FALSE(!(nine < four / 1.5));
+    CHECK_FALSE(!(coarse > 2 * nine));
+}
+
+TEST_CASE("study handover: the comparison of bytes notices one") {
+    const auto context = context_or_skip();
+    const course::GlBuffer a = buffer_of({{1, 2, 3, 4}, {5, 6, 7, 8}}),
+                           b = buffer_of({{1, 2, 3, 4}, {5, 6, 7, 8.5}});
+    CHECK(interop::different_bytes(a, a) == 0);
+    CHECK(interop::different_bytes(a, b) == 1);  // 8 and 8.5: 0x41000000 and 0x41080000
+}
+
 // ---------------------------------------------------------------------------------------- the program from
 // outside
 
@@ -670,11 +834,61 @@ TEST_CASE("program: a broken shader is named, with the driver's message") {
     CHECK(contains(unlinked.output, "do not link"));
 }
 
+TEST_CASE("program: pictures too narrow to be useful, and too large for the driver") {
+    context_or_skip();
+    const TemporaryFolder folder;
+    const std::string small =
+        program("ch06_gl_interop") + " --particles 100 --steps 20 --repeats 1 --out " + folder.path.string();
+    for (const char* size :
+         {" --width 16 --height 16", " --width 16 --height 2048", " --width 2048 --height 16"}) {
+        const Ended ended = run(small + size);
+        CHECK_MESSAGE(ended.exit_code == 0, ended.output);
+    }
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (largest < 32768) {  // two samples a pixel and axis: twice the width
+        const Ended ended = run(small + " --width 16384 --height 16 --draw spheres");
+        CHECK(ended.exit_code == 2);
+        CHECK_MESSAGE(contains(ended.output, "OpenGL can't draw a picture of 32768 x 32 pixels here"),
+                      ended.output);
+    }
+}
+
+TEST_CASE("program: the study of the handover, and none without OpenGL") {
+    context_or_skip();
+    const TemporaryFolder folder;
+    const std::string study =
+        program("ch06_gl_interop") + " --study handover --quick --out " + folder.path.string();
+    const Ended ended = run(study);
+    CHECK_MESSAGE(ended.exit_code == 0, ended.output);
+    CHECK(contains(ended.output, "copy through the host"));
+    CHECK(std::filesystem::exists(folder.path / "study_handover.csv"));
+    const Ended without = run(kNoDriver + study);
+    CHECK(without.exit_code == 2);
+    CHECK(contains(without.output, "libgl1-mesa-dri"));
+}
+
+TEST_CASE("program: more droplets than the machine can hold") {
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (memory > 2147483647.0 * 32) course::skip("this machine can hold them");
+    const TemporaryFolder folder;
+    for (const std::string draw : {"none", "points"}) {
+        const Ended ended = run(program("ch06_gl_interop") + " --particles 2147483647 --steps 1 --draw " +
+                                draw + " --out " + folder.path.string());
+        CHECK(ended.exit_code == 2);
+        CHECK_MESSAGE(contains(ended.output, "GiB of memory"), ended.output);
+    }
+}
+
 TEST_CASE("program: bad options") {
-    for (const std::string options : {" --draw cubes", " --repeats 0", " --frames -1", " --scene pond"}) {
+    for (const std::string options : {" --draw cubes", " --repeats 0", " --frames -1", " --scene pond",
+                                      " --particles 0", " --dt nan", " --dt -1", " --dt 1e-30", " --dt 1e6",
+                                      " --width 0", " --width 15", " --height -720", " --height 16385"}) {
         CAPTURE(options);
         CHECK(run(program("ch06_gl_interop") + options + " --explain").exit_code == 2);
     }
+    const TemporaryFolder folder;
+    CHECK(run(program("ch06_gl_interop") + " --study weather --out " + folder.path.string()).exit_code == 2);
 }
 
 // ------------------------------------------------------------------------------------------------- windows

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "10_water_sph/sph_cpu.h"
+#include "10_water_sph/studies.cuh"
 #include "10_water_sph/water_view.cuh"
 #include "common/gl_context.h"
 #ifdef __CUDASIM__
@@ -18,7 +19,9 @@
 
 namespace {
 
+using sph::at_rest;
 using sph::Box;
+using sph::by_id;
 using sph::EquationOfState;
 using sph::Fluid;
 using sph::Water;
@@ -26,10 +29,6 @@ using sph::Water;
 /// A box so far away that no particle feels its walls.
 Box far_box(float size_m) {
     return {{-size_m, -size_m, -size_m}, {size_m, size_m, size_m}};
-}
-
-std::vector<float4> at_rest(std::size_t n) {
-    return std::vector<float4>(n, make_float4(0, 0, 0, 0));
 }
 
 /// nx * ny * nz points of spacing 1 around the origin; i = x + nx (y + ny z).
@@ -51,16 +50,6 @@ Fluid lattice_fluid(float support) {
     fluid.gravity_m_per_s2 = {0, 0, 0};
     fluid.lowest_pressure_Pa = -1e30f;
     return fluid;
-}
-
-/// Values by particle id, whatever order the water keeps them in.
-template <class T>
-std::vector<T> by_id(const Water& water, const course::DeviceBuffer<T>& buffer) {
-    const std::vector<T> values = buffer.download();
-    const std::vector<std::uint32_t> ids = water.ids().download();
-    std::vector<T> sorted(values.size());
-    for (std::size_t k = 0; k < ids.size(); ++k) sorted[ids[k]] = values[k];
-    return sorted;
 }
 
 }  // namespace
@@ -285,7 +274,7 @@ TEST_CASE("a still column carries its weight: hydrostatic pressure") {
     for (const float4& x : position) {
         if (x.y < 0.3f || x.y > 0.7f) continue;
         ++count;
-        for (const sph::Mirrored& other : others) {
+        for (const auto& other : others) {
             const glm::dvec3 d = glm::dvec3(grid::xyz(x)) - other.position_m;
             const double r = sph::distance(d), h = fluid.support_m;
             if (r > 0 && r < h)
@@ -298,6 +287,90 @@ TEST_CASE("a still column carries its weight: hydrostatic pressure") {
     const double weight =
         points.size() * fluid.mass_kg / (1000 * 0.4 * 0.4 * height);  // of 1 m^2, over rho0 g H
     CHECK(std::abs(slope * moment / weight - 1) < 0.02);
+}
+
+TEST_CASE(
+    "a wider support is no more exact where layers pair up: a still column with 2 and with 3 spacings") {
+    const sph::Scene shaft{"shaft", {{0, 0, 0}, {0.2f, 0.6f, 0.2f}}, {0, 0, 0}, {0.2f, 0.4f, 0.2f}};
+    const auto paired = [&](float support_in_spacings) {
+        sph::Settings settings;
+        settings.scene = shaft;
+        settings.particles = 500;
+        settings.choice.support_in_spacings = support_in_spacings;
+        settings.choice.viscosity = 3;  // it comes to rest sooner
+        sph::Start start = sph::make_start(settings);
+        for (int step = 0; step < int(1.0f / start.dt_s); ++step) start.water.step(start.dt_s);
+        const auto x = start.water.positions().download();
+        int count = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            bool close = false;
+            for (std::size_t j = 0; j < x.size(); ++j) {
+                const float dx = x[i].x - x[j].x, dy = x[i].y - x[j].y, dz = x[i].z - x[j].z;
+                const float reach = 0.5f * start.spacing_m;
+                close = close || (i != j && dx * dx + dy * dy + dz * dz < reach * reach);
+            }
+            count += close;
+        }
+        return count / double(x.size());
+    };
+    const double two = paired(2), three = paired(3);
+    MESSAGE("particles with a neighbour within half a spacing: " << two << " at support 2, " << three
+                                                                 << " at 3");
+    CHECK(two < 0.03);
+    CHECK(three > 0.1);
+}
+
+TEST_CASE("leapfrog is of second order, and viscosity takes some of it away") {
+    double position_ratio[2], energy_ratio[2];
+    for (const bool viscous : {false, true}) {
+        const sph::Wave wave(viscous);
+        // RK4 at a sixth of the program's step: its own error, some 1e-6, is far below those compared.
+        const auto reference = sph::wave_reference(wave, 24);
+        const sph::WaveErrors coarse = sph::run_wave(wave, reference, 8),
+                              fine = sph::run_wave(wave, reference, 16);
+        position_ratio[viscous] = coarse.position / fine.position;
+        energy_ratio[viscous] = coarse.energy / fine.energy;
+    }
+    MESSAGE("half the step divides the position's error by " << position_ratio[0] << ", with viscosity by "
+                                                             << position_ratio[1]);
+    // 4 for second order, 2 for first. 0.2: the next term of the series, and fp32 (errors here are 6e-4 and
+    // up).
+    CHECK(std::abs(position_ratio[0] - 4) < 0.2);
+    CHECK(std::abs(energy_ratio[0] - 4) < 0.2);
+    CHECK(position_ratio[1] < 3.5);
+    CHECK(position_ratio[1] > 2);
+}
+
+TEST_CASE("the limits of the time step in a lattice are those of theory, and the program's are within them") {
+    // Reference (4_sph stability_limits, support 2): 0.98506 h / c, 0.12774 h^2 / nu. 3 % to each side: just
+    // over the limit a wave grows slowly, and just below it a wave is large without growing.
+    Fluid fluid = sph::lattice_fluid(2);
+    const double h = fluid.support_m, c = fluid.sound_speed_m_per_s;
+    const auto stable = [&](double dt_s, int steps) {
+        return sph::lattice_is_stable(fluid, sph::kLatticeSpacing, 8, float(dt_s), steps);
+    };
+    CHECK(stable(0.97 * 0.98506 * h / c, 40));
+    CHECK(!stable(1.03 * 0.98506 * h / c, 40));
+    CHECK(sph::time_step_limit(fluid).sound_s < 0.5 * 0.985 * h / c);
+    fluid.viscosity_m2_per_s = float(3 * h * c);
+    const double nu = fluid.viscosity_m2_per_s;
+    CHECK(stable(0.97 * 0.12774 * h * h / nu, 400));
+    CHECK(!stable(1.05 * 0.12774 * h * h / nu, 400));
+    CHECK(sph::time_step_limit(fluid).viscosity_s < 0.5 * 0.1277 * h * h / nu);
+}
+
+TEST_CASE("the density error of a lattice that fills a box is the tabulated one") {
+    for (const auto& [support, error] :
+         {std::pair(2.0f, 0.009775166894684828), {3.0f, 0.002189016010115008}}) {
+        const sph::LatticeBox lattice = sph::lattice_box(6, 6, 6);
+        const Fluid fluid = sph::lattice_fluid(support);
+        const Water water(fluid, lattice.box, EquationOfState::linear, lattice.position,
+                          at_rest(lattice.position.size()));
+        const double mass = 1000 * std::pow(double(sph::kLatticeSpacing), 3);
+        // The error is a difference of nearly equal numbers: fp32 sums of 100 terms leave 1e-6 of the
+        // density.
+        CHECK(std::abs(sph::density_error(water, mass, 1000) - error) < 2e-6);
+    }
 }
 
 TEST_CASE("momentum stays: a colliding blob without walls or gravity") {
@@ -570,6 +643,19 @@ TEST_CASE("bad input ends with exit 2 and one sentence") {
         CHECK_MESSAGE(std::count(run.output.begin(), run.output.end(), '\n') == 1,
                       arguments << ": " << run.output);
     }
+}
+
+TEST_CASE("a study and a stability map come out as rows") {
+    const course::ProgramRun run = run_program("--study precision --quick");
+    CHECK(run.exit_code == 0);
+    for (const char* part :
+         {"double, all pairs", "float, all pairs", "float, kernels with grid", "distance_m"})
+        CHECK_MESSAGE(run.output.find(part) != std::string::npos, part << " in: " << run.output);
+    const course::ProgramRun list = run_program("--list-studies");
+    CHECK(list.exit_code == 0);
+    for (const char* name : {"study support", "study time_step", "study energy", "study precision",
+                             "study stiffness", "study equation", "stability sound", "stability viscosity"})
+        CHECK_MESSAGE(list.output.find(name) != std::string::npos, name << " in: " << list.output);
 }
 
 TEST_CASE("--explain answers without a run") {

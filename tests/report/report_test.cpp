@@ -24,8 +24,12 @@ Line power_law(const std::string& method, double c, double order, double first_s
 }
 
 StudyData study_of(std::vector<Line> lines) {
-    return {
-        {"00_test", "s", "Which?", "command", "cpu", "device", false}, "m", "dt_s", true, std::move(lines)};
+    return {{"00_test", "s", "Which?", "command", "cpu", "device", false},
+            "m",
+            "dt_s",
+            true,
+            false,
+            std::move(lines)};
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -37,7 +41,9 @@ bool has_gnuplot() {
 }
 
 std::string study_json() {
-    course::Study study({"s", "Which \"one\" <is> it?", "m", "dt_s"}, "00_test", false);
+    course::Study study(
+        {"s", "Which \"one\" <is> it?", "m", "dt_s", course::StudyPlot::error_against_time, true}, "00_test",
+        false);
     for (int k = 1; k < 5; ++k) {
         study.add({"first", 1.0 / k, 1, 1.0 / k, {1e-3, 9e-4, 2e-3, 5}, double(k)});
         study.add(
@@ -71,8 +77,7 @@ TEST_CASE("the conclusion names the winner, by how much, and where another one w
     const std::string text =
         conclusion(study_of({power_law("Euler", 1, 1, 1, 14), power_law("RK4", 100, 4, 1, 8)}));
     CHECK(contains(text, "For an error of 1e-3, RK4 is the cheapest, 56 times cheaper than Euler."));
-    CHECK(contains(text, "Euler from 1e2 to 1 and"));
-    CHECK(contains(text, "RK4 from 1e-1"));
+    CHECK(contains(text, "The cheapest, by error: 1e2 to 1: Euler; 1e-1 to 1e-6: RK4."));
     CHECK(contains(text, "Only RK4 gets to 1e-6."));
     CHECK(!contains(text, "worse again"));
 }
@@ -87,7 +92,7 @@ TEST_CASE("a floor is named: more time, more error") {
     Line line = power_law("float", 1, 2, 1, 5);
     line.points.push_back({1, 1, 0.1, 1000, 1000, 1000});
     CHECK(contains(conclusion(study_of({line, power_law("double", 1, 2, 2, 5)})),
-                   "worse again, beyond its best, for float (0.003906)"));
+                   "more time makes it worse again: float (0.003906)."));
 }
 
 TEST_CASE("a study of cost names the growth and the fastest at the largest") {
@@ -102,8 +107,42 @@ TEST_CASE("a study of cost names the growth and the fastest at the largest") {
     }
     const std::string text = conclusion(study);
     CHECK(contains(text, "At n = 100000, grid is the fastest, 100000 times faster than brute force."));
-    CHECK(contains(text, "1.00 for grid and 2.00 for brute force"));
+    CHECK(contains(text, "Time grows as n to the power 1.00 (grid) and 2.00 (brute force)."));
     CHECK(contains(text, "Largest error: 0."));
+}
+
+TEST_CASE("parts of a method are added up before it is compared") {
+    StudyData study = study_of({});
+    study.error_against_time = false;
+    study.parameter = "n";
+    const auto line = [](const std::string& method, double s) {
+        return Line{method, {{10, 10, 0, s, s, s}, {20, 20, 0, 2 * s, 2 * s, 2 * s}}};
+    };
+    study.lines = {line("grid: build", 1), line("grid: query", 2), line("brute force", 2)};
+    CHECK(contains(conclusion(study),
+                   "At n = 20, brute force is the fastest, 1.5 times faster than grid (parts added up)."));
+}
+
+TEST_CASE("cases are not compared with each other, methods within a case are") {
+    StudyData study = study_of({power_law("wave", 1, 2, 1, 5), power_law("splash, Euler", 1, 1, 1, 5),
+                                power_law("splash, RK4", 1, 4, 1, 5)});
+    study.lines_are_cases = true;
+    const std::string text = conclusion(study);
+    CHECK(contains(text,
+                   "Wave: From an error of 1 in 1 s to 0.003906 in 16 s: the error falls as the time to the "
+                   "power -2.00."));
+    CHECK(contains(text, "Splash: For an error of 1e-1, RK4 is the cheapest, 5.6 times cheaper than Euler."));
+    CHECK(!contains(text, "than wave"));
+}
+
+TEST_CASE("methods with the same limits share a sentence") {
+    StabilityData data;
+    for (const char* method : {"a", "b", "c"})
+        data.maps.push_back({method, {{1, *method == 'c' ? 0.5 : 1.0, 1, {{1, true}}}}});
+    data.stiffness = "k";
+    CHECK(conclusion(data) ==
+          "a and b: the measured limit is 1.00 of the theory's. c: the measured limit is 0.50 of the "
+          "theory's: at k = 1 the theory promises too much. ");
 }
 
 TEST_CASE("a conclusion on stability compares with the theory, also where nothing was unstable") {
@@ -125,6 +164,8 @@ TEST_CASE("what a study writes, the report reads") {
     CHECK(study.lines[0].points.size() == 4);
     CHECK(study.lines[0].points[2].seconds == 3 * 1e-3);  // steps times seconds per step
     CHECK(std::isinf(study.lines[1].points[0].error));
+    CHECK(study.error_against_time);
+    CHECK(study.lines_are_cases);
     CHECK(study.origin.question == "Which \"one\" <is> it?");
     CHECK_THROWS(load_stability(folder.path() / "s.json"));
 }

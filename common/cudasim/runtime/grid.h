@@ -3,6 +3,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 
 #include "cudasim.h"
 
@@ -15,6 +16,9 @@ struct Grid {
     std::uint64_t chunk;   ///< blocks that a worker takes at a time
     std::atomic<std::uint64_t> next_turn{0};
     std::atomic<bool> failed{false};  ///< a worker met an error: no further block starts
+
+    std::mutex counts_mutex;
+    Counts counts;  ///< of all workers that have finished
 
     Grid(const LaunchRequest& launch, Order launch_order, unsigned workers)
         : request(launch),

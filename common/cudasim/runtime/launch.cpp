@@ -45,6 +45,7 @@ void refuse(const LaunchRequest& request, cudaError_t error, const std::string& 
 bool run_in_order(const LaunchRequest& request, Order order, unsigned workers) {
     Grid grid(request, order, workers);
     WorkerPool::instance().run(grid, workers);
+    note_counts(grid.counts);
     return !grid.failed;
 }
 

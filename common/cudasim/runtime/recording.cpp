@@ -32,6 +32,12 @@ std::size_t Recording::count(const std::string& kernel_prefix) const {
         }));
 }
 
+Counts Recording::counts() const {
+    Counts sum;
+    for (const Launch& launch : launches_) sum += launch.counts;
+    return sum;
+}
+
 void Recording::note_allocation(std::size_t bytes) {
     ++allocations_;
     bytes_ += bytes;
@@ -39,7 +45,11 @@ void Recording::note_allocation(std::size_t bytes) {
 
 void note_launch(const LaunchRequest& request) {
     for (Recording* recording : recordings())
-        recording->note_launch({request.kernel, request.grid, request.block, request.shared_bytes});
+        recording->note_launch({request.kernel, request.grid, request.block, request.shared_bytes, {}});
+}
+
+void note_counts(const Counts& counts) {
+    for (Recording* recording : recordings()) recording->note_counts(counts);
 }
 
 void note_allocation(std::size_t bytes) {

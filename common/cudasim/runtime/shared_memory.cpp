@@ -1,3 +1,4 @@
+#include "runtime/counting.h"
 #include "runtime/poison.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -14,6 +15,7 @@ void poison_shared(void* begin, std::size_t bytes) {
     __asan_poison_memory_region(first + bytes, kRedZone);
 #endif
     fill_with_poison(first, bytes);
+    note_shared_memory(first, bytes);
 }
 
 }  // namespace cudasim

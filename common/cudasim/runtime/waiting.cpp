@@ -63,6 +63,7 @@ Votes Worker::wait_for_block(bool predicate, const WaitPlace& place) {
     if (at_barrier_.size() == block_.size && !different_barriers_) {
         votes_cast_ = votes_;
         votes_ = {0, true};
+        ++counts.barriers;
         make_ready(at_barrier_);
     }
     suspend(place);
@@ -114,6 +115,7 @@ void Worker::complete(WarpGroup& group) {
     group.votes_cast[group.turn] = group.votes;
     group.turn ^= 1u;
     group.arrived = group.votes = 0;
+    ++counts.warp_operations;
     make_ready(group.waiting);
 }
 

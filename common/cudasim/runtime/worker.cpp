@@ -29,6 +29,7 @@ void Worker::run(Grid& grid) {
     blockDim = grid.request.block;
     block_.size = blockDim.x * blockDim.y * blockDim.z;
     turn_ = turns_end_ = 0;
+    counts = {};
     warps_.resize(std::max<std::size_t>(warps_.size(), (block_.size + 31) / 32));
 #if defined(__AVX__)
     // A switch costs five times as much while the upper halves of vector registers hold something.
@@ -36,6 +37,8 @@ void Worker::run(Grid& grid) {
 #endif
     if (begin_next_block()) switch_to(idle_fiber());  // comes back when there are no more blocks
     running_launch = nullptr;
+    const std::lock_guard lock(grid.counts_mutex);
+    grid.counts += counts;
 }
 
 bool Worker::begin_next_block() {

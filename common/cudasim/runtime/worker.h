@@ -39,6 +39,8 @@ class Worker {
     /// Does `address` lie behind the end of the dynamic shared memory?
     bool is_behind_shared(const void* address) const { return dynamic_shared_.guards(address); }
 
+    Counts counts;  ///< of the grid it runs
+
   private:
     Worker();
 

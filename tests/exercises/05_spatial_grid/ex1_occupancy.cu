@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "05_spatial_grid/bounds.cuh"
 #include "05_spatial_grid/cloud.h"
 #include "tests/support/course_test.h"
 

@@ -49,7 +49,7 @@ std::vector<float4> smooth_cpu(const std::vector<float4>& position, const std::v
     for (std::size_t i = 0; i < position.size(); ++i) {
         const dvec3 x(grid::xyz(position[i])), v(grid::xyz(velocity[i]));
         dvec3 sum(0);
-        for (const sph::Mirrored& other : others) {
+        for (const auto& other : others) {
             const dvec3 d = (x - other.position_m) / h;
             const double w = sph::poly6(d.x * d.x + d.y * d.y + d.z * d.z) / (h * h * h);
             sum += w / ((double(density[i]) + density[other.particle]) / 2) * (other.velocity_m_per_s - v);

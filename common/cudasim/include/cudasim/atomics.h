@@ -6,6 +6,12 @@
 
 namespace cudasim {
 
+#if defined(CUDASIM_COUNT_ACCESSES)
+void count_atomic(const void* address);
+#else
+inline void count_atomic(const void*) {}
+#endif
+
 /// Keeps T from being deduced, so that `atomicAdd(&unsigned_counter, 1)` converts its 1 as a plain call
 /// would.
 template <class T>
@@ -19,6 +25,7 @@ using exactly_t = typename Exactly<T>::type;
 template <class T, class Update>
 T atomic_update(T* address, Update update) {
     static_assert(sizeof(T) == 4 || sizeof(T) == 8, "atomics exist for 4 and 8 bytes only");
+    count_atomic(address);
     using Bits = std::conditional_t<sizeof(T) == 4, unsigned, unsigned long long>;
     Bits* bits = reinterpret_cast<Bits*>(address);
     Bits seen = __atomic_load_n(bits, __ATOMIC_RELAXED);
@@ -37,14 +44,17 @@ T atomic_update(T* address, Update update) {
 
 template <class T>
 T atomicAdd(T* address, cudasim::exactly_t<T> value) {
-    if constexpr (std::is_integral_v<T>)
+    if constexpr (std::is_integral_v<T>) {
+        cudasim::count_atomic(address);
         return __atomic_fetch_add(address, value, __ATOMIC_RELAXED);
-    else
+    } else {
         return cudasim::atomic_update(address, [=](T before) { return before + value; });
+    }
 }
 template <class T>
 T atomicSub(T* address, cudasim::exactly_t<T> value) {
     static_assert(std::is_integral_v<T>, "CUDA has atomicSub for integers only: add the negative value");
+    cudasim::count_atomic(address);
     return __atomic_fetch_sub(address, value, __ATOMIC_RELAXED);
 }
 template <class T>
@@ -65,19 +75,23 @@ T atomicExch(T* address, cudasim::exactly_t<T> value) {
 template <class T>
 T atomicCAS(T* address, cudasim::exactly_t<T> expected, cudasim::exactly_t<T> value) {
     static_assert(std::is_integral_v<T>, "CUDA has atomicCAS for integers only");
+    cudasim::count_atomic(address);
     __atomic_compare_exchange_n(address, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
     return expected;  // which now holds what was found
 }
 template <class T>
 T atomicAnd(T* address, cudasim::exactly_t<T> value) {
+    cudasim::count_atomic(address);
     return __atomic_fetch_and(address, value, __ATOMIC_RELAXED);
 }
 template <class T>
 T atomicOr(T* address, cudasim::exactly_t<T> value) {
+    cudasim::count_atomic(address);
     return __atomic_fetch_or(address, value, __ATOMIC_RELAXED);
 }
 template <class T>
 T atomicXor(T* address, cudasim::exactly_t<T> value) {
+    cudasim::count_atomic(address);
     return __atomic_fetch_xor(address, value, __ATOMIC_RELAXED);
 }
 /// Counts up to `limit`, then starts again at 0.

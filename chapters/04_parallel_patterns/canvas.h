@@ -1,5 +1,5 @@
 /// @file
-/// A few shapes and words on a course::Image: enough for this chapter's two figures.
+/// A few shapes and words on a course::Image: enough for the figures of this chapter and the next.
 #pragma once
 #include <stb/stb_easy_font.h>
 
@@ -13,7 +13,8 @@
 
 #include "common/image.h"
 
-namespace grid {
+/// Shapes, words and colours.
+namespace patterns::drawing {
 
 struct Colour {
     std::uint8_t r, g, b;
@@ -88,4 +89,4 @@ class Canvas {
     course::Image image_;
 };
 
-}  // namespace grid
+}  // namespace patterns::drawing
