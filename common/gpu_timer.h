@@ -59,11 +59,16 @@ inline std::string device_name() {
     return properties.name;
 }
 
+/// False where kernels run on the simulator.
+inline bool is_gpu() {
+    return device_name().find("simulator") == std::string::npos;
+}
+
 /// Says of a Study or a StabilityMap that its kernels ran on the device.
 template <class Measured>
 void on_device(Measured& measured) {
     measured.device = device_name();
-    measured.backend = measured.device.find("simulator") == std::string::npos ? "cuda" : "simulator";
+    measured.backend = is_gpu() ? "cuda" : "simulator";
 }
 
 }  // namespace course

@@ -70,8 +70,13 @@ void Program::parse(int argc, char** argv) {
     app.add_option("--height", options.height, "picture height in pixels")->capture_default_str();
     app.add_option("--csv", options.csv, "also write the first table to this file");
     app.add_flag("--explain", options.explain, "say what is computed and what is left out, then stop");
-    app.add_option("--study", study_, "measure error against run time instead: see --list-studies");
-    app.add_option("--stability", stability_, "measure which time steps are stable instead");
+    const auto has_a_name = [](const std::string& text) {
+        return text.empty() ? std::string("needs a name") : std::string{};
+    };
+    app.add_option("--study", study_, "measure error against run time instead: see --list-studies")
+        ->check(has_a_name);
+    app.add_option("--stability", stability_, "measure which time steps are stable instead")
+        ->check(has_a_name);
     app.add_flag("--list-studies", list_studies_, "name the studies and the stability maps, then stop");
     app.add_flag("--quick", options.quick, "studies and stability maps with fewer and smaller points");
     app.parse(argc, argv);

@@ -81,6 +81,7 @@ std::string Study::json(const std::string& command) const {
     json["plot"] =
         question.plot == StudyPlot::error_against_time ? "error_against_time" : "time_against_value";
     json["lines_are_cases"] = question.lines_are_cases;
+    json["values_are_problems"] = question.values_are_problems;
     json["backend"] = backend;
     json["device"] = device;
     json["quick"] = quick;

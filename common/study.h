@@ -31,6 +31,9 @@ struct StudyQuestion {
     /// Method names are "CASE, METHOD", or only "CASE": cases are different problems, and a conclusion that
     /// one of them is cheaper would mean nothing. Only methods within a case are compared.
     bool lines_are_cases = false;
+    /// Each value of the parameter is another problem (a size, a distance), not more effort for the same one:
+    /// methods are compared at equal value.
+    bool values_are_problems = false;
 };
 
 /// One measured point of a study.

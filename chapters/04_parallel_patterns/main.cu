@@ -49,7 +49,7 @@ course::Table table_of(const std::vector<Version>& versions, const Input& input,
         std::vector<course::Cell> row{version.pattern, version.name};
         double megabytes = 0;
         if (version.is_library()) {
-            row.insert(row.end(), 9, "");
+            row.insert(row.end(), 9, "-");
         } else {
             const Cost c = version.cost(input);
             megabytes = double(c.bytes) / 1e6;
@@ -86,15 +86,11 @@ course::Table tenths_table() {
     return table;
 }
 
-bool is_gpu(const std::string& device) {
-    return device.find("simulator") == std::string::npos;
-}
-
 void show(course::Program& program) {
     const course::ProgramOptions& o = program.options;
     course::Result& result = program.result();
     result.device = course::device_name();
-    const bool on_gpu = is_gpu(result.device);
+    const bool on_gpu = course::is_gpu();
     const std::vector<Version> versions = all_versions();
     const Input input = random_input(o.particles, o.seed);
 
@@ -104,17 +100,20 @@ void show(course::Program& program) {
     result.picture("traffic.png", "What every version asks of global memory");
     result.table(table_of(versions, input, on_gpu));
     result.table(tenths_table());
-    result.note("Every version gives what the CPU reference gives, and so does Thrust.");
+    result.note(
+        "Every version gives what the CPU reference gives, and so does Thrust, whose accesses are not "
+        "counted.");
     if (!on_gpu) result.note("Counts, not times: on the CUDA simulator a barrier costs what it costs a CPU.");
 }
 
 void declare_studies(course::Program& program) {
     using course::StudyPlot;
-    program.study({"summation", "Which way to add floats gives how many digits, in what time?",
-                   "relative error of the sum against the exact one", "n"},
-                  study_summation);
+    program.study(
+        {"summation", "Which way to add floats gives how many digits, in what time?",
+         "relative error of the sum against the exact one", "n", StudyPlot::error_against_time, false, true},
+        study_summation);
     // How long a barrier takes on the simulator is nobody's question: there the measure is the counts.
-    if (!is_gpu(course::device_name())) return;
+    if (!course::is_gpu()) return;
     const std::string exact = "elements that differ from the CPU's result (0: all are exact)";
     program.study(
         {"reduce", "Which sum is fast, for how many elements?", exact, "n", StudyPlot::time_against_value},

@@ -23,7 +23,8 @@ inline void declare_studies(course::Program& program) {
                    course::StudyPlot::error_against_time, true},
                   study_energy);
     program.study({"precision", "How far from the origin are floats enough?",
-                   "acceleration: rms difference from double at the origin, relative", "distance_m"},
+                   "acceleration: rms difference from double at the origin, relative", "distance_m",
+                   course::StudyPlot::error_against_time, false, true},
                   study_precision);
     program.study({"stiffness", "What does it cost to let water give way less?",
                    "compression: rms of max(rho / rho0 - 1, 0)", "stiffness",

@@ -184,6 +184,38 @@ std::string error_conclusion(const StudyData& study) {
     return text + floors(study.lines);
 }
 
+/// At the largest value: the methods that no other one beats in both time and error, the fastest first.
+std::string front_conclusion(const StudyData& study) {
+    double largest = 0;
+    for (const Line& line : study.lines)
+        for (const Point& point : line.points) largest = std::max(largest, point.value);
+    struct Candidate {
+        std::string method;
+        Point point;
+    };
+    std::vector<Candidate> all;
+    for (const Line& line : study.lines)
+        for (const Point& point : line.points)
+            if (point.value == largest && std::isfinite(point.error)) all.push_back({line.method, point});
+    std::sort(all.begin(), all.end(),
+              [](const Candidate& a, const Candidate& b) { return a.point.seconds < b.point.seconds; });
+    std::string front, beaten;
+    double least_error = kInfinity;
+    for (const Candidate& c : all) {
+        const std::string numbers = c.method + " (" + format_number(c.point.seconds) + " s, error " +
+                                    format_number(c.point.error) + ")";
+        if (c.point.error < least_error) {
+            front += (front.empty() ? "" : "; ") + numbers;
+            least_error = c.point.error;
+        } else {
+            beaten += (beaten.empty() ? "" : "; ") + numbers;
+        }
+    }
+    return "At " + study.parameter + " = " + format_number(largest) +
+           ", each of these is the cheapest for its error: " + front + "." +
+           (beaten.empty() ? "" : " Slower and no more exact than one of them: " + beaten + ".");
+}
+
 /// "sorted grid: build" and "sorted grid: query" are parts of one method: their times add up.
 std::vector<Line> sums_of_parts(const std::vector<Line>& lines) {
     std::vector<Line> sums;
@@ -244,6 +276,7 @@ double seconds_for_error(const Line& line, double error) {
 
 std::string conclusion(const StudyData& study) {
     const auto of = [](const StudyData& data) {
+        if (data.values_are_problems) return front_conclusion(data);
         return data.error_against_time ? error_conclusion(data) : cost_conclusion(data);
     };
     if (!study.lines_are_cases) return of(study);

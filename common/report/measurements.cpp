@@ -46,6 +46,7 @@ StudyData load_study(const std::filesystem::path& file) {
                     json.at("parameter"),
                     json.at("plot") == "error_against_time",
                     json.at("lines_are_cases"),
+                    json.at("values_are_problems"),
                     {}};
     for (const auto& row : json.at("rows")) {
         const std::string method = row.at("method");

@@ -28,8 +28,9 @@ struct Origin {
 struct StudyData {
     Origin origin;
     std::string error_kind, parameter;
-    bool error_against_time = true;  ///< else time against the parameter
-    bool lines_are_cases = false;    ///< "CASE, METHOD": only methods of the same case compete
+    bool error_against_time = true;    ///< else time against the parameter
+    bool lines_are_cases = false;      ///< "CASE, METHOD": only methods of the same case compete
+    bool values_are_problems = false;  ///< methods are compared at equal value of the parameter
     std::vector<Line> lines;
 };
 

@@ -48,6 +48,7 @@ TEST_CASE("a study that does not exist is a clear error in every program") {
         CHECK(map.exit_code == 2);
         CHECK(contains(map.output, "there is no stability map 'no_such'"));
         CHECK(course::run_program(program, "--study a --stability b" + out).exit_code == 2);
+        CHECK(course::run_program(program, "--study ''" + out).exit_code == 2);
     }
     CHECK(std::filesystem::is_empty(folder.path()));  // nothing half-written
 }

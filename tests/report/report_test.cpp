@@ -29,6 +29,7 @@ StudyData study_of(std::vector<Line> lines) {
             "dt_s",
             true,
             false,
+            false,
             std::move(lines)};
 }
 
@@ -133,6 +134,19 @@ TEST_CASE("cases are not compared with each other, methods within a case are") {
                    "power -2.00."));
     CHECK(contains(text, "Splash: For an error of 1e-1, RK4 is the cheapest, 5.6 times cheaper than Euler."));
     CHECK(!contains(text, "than wave"));
+}
+
+TEST_CASE("where each value is another problem, methods are compared at the largest") {
+    const auto line = [](const std::string& method, double seconds, double error) {
+        return Line{method, {{10, 10, 1e-9, 1e-6, 1e-6, 1e-6}, {20, 20, error, seconds, seconds, seconds}}};
+    };
+    StudyData study = study_of({line("naive", 2, 0.5), line("tree", 1, 0.1), line("Kahan", 4, 0.01)});
+    study.parameter = "n";
+    study.values_are_problems = true;
+    CHECK(conclusion(study) ==
+          "At n = 20, each of these is the cheapest for its error: tree (1 s, error 0.1); Kahan (4 s, error "
+          "0.01). "
+          "Slower and no more exact than one of them: naive (2 s, error 0.5).");
 }
 
 TEST_CASE("methods with the same limits share a sentence") {
