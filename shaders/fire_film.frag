@@ -38,6 +38,9 @@ void main() {
     }
     light = mix(light, around, 0.6 * smoothstep(0.03, 0.06, jump));
     if (glare > 0.0) light = mix(light, texture(glare_map, gl_FragCoord.xy / picture_px).rgb, glare);
+    // The filters over a film's three colours overlap: each sees a little of what belongs to the others. That is why a
+    // flame's core is cream on a photograph, not lemon.
+    light = mix(light, vec3(dot(light, vec3(0.2126, 0.7152, 0.0722))), 0.03);
     // Film runs out of grains: each colour comes near 1 and never reaches it. Red is first, then green; so
     // the deep orange of a black body turns yellow where flames overlap, as on a photograph.
     vec3 exposed = 1.0 - exp(-exposure * light);

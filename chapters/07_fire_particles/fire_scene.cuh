@@ -118,11 +118,11 @@ inline FireScene torch(std::uint32_t particles) {
     body.fade_in = 0.20f, body.fade_out = 0.35f;
     body.wisps = 0.85f;
     body.temperature_start_K = 1900, body.temperature_end_K = 1400;
-    body.light = 700.0f / float(count);
+    body.light = 450.0f / float(count);
     ParticleKind& flame = add_kind(scene, count, body);
-    flame.emitter = {Emitter::disc, {0, -0.055f, 0}, {0, 1, 0}, 0.040f};
+    flame.emitter = {Emitter::disc, {0, -0.055f, 0}, {0, 1, 0}, 0.024f};
     flame.emitter.roots = 9;
-    flame.emitter.root_m = 0.018f;
+    flame.emitter.root_m = 0.010f;
     flame.velocity_m_per_s = {0, 0.25f, 0};
     flame.outward_m_per_s = 0.15f;
     flame.spread_m_per_s = 0.2f;
@@ -166,9 +166,9 @@ inline FireScene torch(std::uint32_t particles) {
     scene.stage.rods = {{{0.02f, -0.75f, 0}, {0, -0.05f, 0}, 0.016f, Rod::wood, 0},
                         {{0.0f, -0.115f, 0}, {0, -0.06f, 0}, 0.028f, Rod::wood, 0.7f}};
     scene.stage.ground = false;
-    scene.lights = {{{0, 0.08f, 0.08f}, glm::vec3(1.0f, 0.42f, 0.10f) * 0.05f, 0.05f}};
+    scene.lights = {{{0, 0.08f, 0}, glm::vec3(1.0f, 0.42f, 0.10f) * 0.05f, 0.05f}};
     scene.flicker = 0.2f;
-    scene.view = {{0, 0.12f, 0}, 1.15f, 0.0f, 0.03f};
+    scene.view = {{0, 0.12f, 0}, 0.95f, 0.0f, 0.03f};
     return scene;
 }
 

@@ -60,8 +60,8 @@ void save_lapse(course::Program& program, SharedFire& fire, FireView& view) {
                                        " ms from one to the next");
 }
 
-/// One scene: a still, its costs, and a time lapse if that is wanted. @returns the still
-course::Image run_scene(course::Program& program, const Choices& choices, const FireScene& scene, bool lapse,
+/// One scene: a still, its costs, and a time lapse. @returns the still
+course::Image run_scene(course::Program& program, const Choices& choices, const FireScene& scene,
                         course::Table& costs) {
     const course::ProgramOptions& options = program.options;
     FireView view(scene, options.width, options.height, choices.order());  // a shader that fails is known now
@@ -79,7 +79,7 @@ course::Image run_scene(course::Program& program, const Choices& choices, const 
     const int width = std::max(1, options.width / 2), height = std::max(1, options.height / 2);
     FireView sorted(scene, width, height), unsorted(scene, width, height, SmokeOrder::unsorted);
     add_cost(costs, fire, sorted, unsorted);
-    if (lapse) save_lapse(program, fire, choices.unsorted ? unsorted : sorted);
+    save_lapse(program, fire, choices.unsorted ? unsorted : sorted);
     return still;
 }
 
@@ -142,7 +142,7 @@ void declare_studies(course::Program& program) {
         study_sprites);
     program.study({"sorting", "How finely must smoke be sorted, and what does that cost?",
                    "difference of the light from that of fully sorted smoke, relative, root mean square",
-                   "depth_slices"},
+                   "depth_slices", course::StudyPlot::error_against_time, true},
                   study_sorting);
     program.stability(
         {"drag", "How long may a time step be at a given drag?",
@@ -193,8 +193,7 @@ int main(int argc, char** argv) {
             course::Table costs = cost_table(options.width / 2, options.height / 2);
             std::vector<course::Image> stills;
             for (const FireScene& scene : scenes)
-                stills.push_back(half_size(run_scene(program, choices, scene,
-                                                     scenes.size() == 1 || scene.name == "campfire", costs)));
+                stills.push_back(half_size(run_scene(program, choices, scene, costs)));
             if (stills.size() > 1) {
                 course::save_png(options.out / "fires.png", course::contact_sheet(stills, 2));
                 program.result().picture("fires.png", "Candle, torch, campfire, and a log in the wind");

@@ -17,7 +17,7 @@ inline std::vector<std::pair<std::string, int>> launches_per_step(const VortexSc
                                                                   glm::ivec3 cells) {
     const VortexModel& m = scene.model;
     const int grids = m.stepping == Stepping::midpoint ? 2 : 1;  // the velocity grid is made so often
-    std::vector<std::pair<std::string, int>> kernels{{"bounds_kernel", 2}};
+    std::vector<std::pair<std::string, int>> kernels{{"bounds_walk_kernel", 2}};
     if (m.far_field.far != Far::direct) {
         const std::uint32_t count = std::uint32_t(cells.x) * cells.y * cells.z;
         const int levels = grid::ExclusiveScan::levels(count + 2);  // with the limbo and the end

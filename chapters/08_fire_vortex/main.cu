@@ -73,11 +73,6 @@ void advance(SharedVortexFire& fire, int steps, course::Progress* progress = nul
     }
 }
 
-/// What a run shows besides the still.
-struct Extras {
-    bool lapse = false, comparison = false;
-};
-
 void show_comparison(course::Program& program, SharedVortexFire& fire, double step_s) {
     const course::ProgramOptions& options = program.options;
     const TwoFires two = compare_fires(fire, step_s, options.seed, options.width, options.height);
@@ -105,8 +100,8 @@ void show_lapse(course::Program& program, SharedVortexFire& fire, const course::
     program.result().picture(file, "Time lapse, twelve pictures a second, row by row");
 }
 
-void run_scene(course::Program& program, const VortexScene& scene, const Extras& extras,
-               course::Table& costs) {
+/// A still, its costs, a time lapse; and, if wanted, the comparison with chapter 07's fire.
+void run_scene(course::Program& program, const VortexScene& scene, bool comparison, course::Table& costs) {
     const course::ProgramOptions& options = program.options;
     const std::string name = scene.fire.name;
     const int steps = scene.fire.warm_up_steps;
@@ -124,8 +119,8 @@ void run_scene(course::Program& program, const VortexScene& scene, const Extras&
     const CellGrid& cells = fire.vortons().flow().grid;
     costs.row({name, fire.vortons().particles(), scene.model.vortons, cells.cell_count(),
                1 / cells.cells_per_m, scene.fire.dt_s, 1e3 * step_s, 1e3 * picture_s});
-    if (extras.comparison) show_comparison(program, fire, step_s);
-    if (extras.lapse) show_lapse(program, fire, camera);
+    if (comparison) show_comparison(program, fire, step_s);
+    show_lapse(program, fire, camera);
 }
 
 void run_headless(course::Program& program, const Choices& choices) {
@@ -137,8 +132,7 @@ void run_headless(course::Program& program, const Choices& choices) {
                                             "ms per step", "ms per picture"});
     for (const std::string& name : scene_names())
         if (all || options.scene == name)
-            run_scene(program, make(options, choices, name), {!all || name == "campfire", name == "campfire"},
-                      costs);
+            run_scene(program, make(options, choices, name), name == "campfire", costs);
     program.result().table(costs);
 }
 

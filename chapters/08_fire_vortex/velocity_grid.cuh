@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "05_spatial_grid/bounds.cuh"
+#include "04_parallel_patterns/bounds.cuh"
 #include "08_fire_vortex/field_sums.cuh"
 
 namespace vortex {

@@ -64,14 +64,14 @@ inline VortexScene campfire(std::uint32_t particles) {
     flame.emitter = {fire::Emitter::disc, {0, 0.07f, 0}, {0, 1, 0}, 0.24f};
     flame.velocity_m_per_s = {0, 0.4f, 0};
     flame.spread_m_per_s = 0.15f;
-    flame.life_s = 1.2f, flame.life_spread = 0.3f, flame.decay_spread = 0.1f, flame.edge_life = 0.8f;
+    flame.life_s = 1.2f, flame.life_spread = 0.3f, flame.decay_spread = 0.1f, flame.edge_life = 0.45f;
     fire::SpriteLook& body = f.looks[0] = {};
-    body.temperature_start_K = 1950, body.temperature_end_K = 1360;
-    body.radius_start_m = 0.026f, body.radius_end_m = 0.016f;
+    body.temperature_start_K = 1950, body.temperature_end_K = 1320;
+    body.radius_start_m = 0.026f, body.radius_end_m = 0.032f;
     body.stretch_s = 0.035f;
     body.wisps = 0.7f;
-    body.fade_in = 0.10f, body.fade_out = 0.35f;
-    body.light = 1600.0f / float(flame.count);
+    body.fade_in = 0.18f, body.fade_out = 0.35f;
+    body.light = 1100.0f / float(flame.count);
 
     fire::ParticleKind& puff = f.fire.kind[1];
     puff.emitter.centre_m.y = 0.6f;
@@ -93,6 +93,10 @@ inline VortexScene campfire(std::uint32_t particles) {
     m.mirror_m = 0.2f;
     m.reach_m = 1.7f;
     stir(m, flame.emitter, 4000, 0.45f, 13, 1.3f);
+    // The flames burn from a few roots; the air they heat is stirred all over the fire.
+    flame.emitter.size_m = 0.18f;
+    flame.emitter.roots = 9;
+    flame.emitter.root_m = 0.06f;
     f.view = {{0, 0.52f, 0}, 2.3f, 0.2f, 0.10f};
     return scene;
 }
@@ -121,10 +125,10 @@ inline VortexScene torch(std::uint32_t particles) {
     flame.spread_m_per_s = 0.1f;
     flame.life_s = 0.6f, flame.life_spread = 0.3f, flame.decay_spread = 0.1f, flame.edge_life = 0.6f;
     fire::SpriteLook& body = f.looks[0] = {};
-    body.temperature_start_K = 1950, body.temperature_end_K = 1420;
-    body.radius_start_m = 0.008f, body.radius_end_m = 0.005f;
+    body.temperature_start_K = 1950, body.temperature_end_K = 1370;
+    body.radius_start_m = 0.008f, body.radius_end_m = 0.010f;
     body.stretch_s = 0.014f;
-    body.wisps = 0.6f;
+    body.wisps = 0.4f;
     body.fade_in = 0.08f, body.fade_out = 0.35f;
     body.softness_m = 0.01f;
     body.light = 520.0f / float(flame.count);

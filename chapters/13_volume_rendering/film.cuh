@@ -59,8 +59,10 @@ struct Film {
 
 //! [film]
 /// Film runs out of grains: each colour comes near 1 and never reaches it, red first, then green. So the deep
-/// orange of a black body turns yellow where there is much of it, as on a photograph.
+/// orange of a black body turns yellow where there is much of it, as on a photograph; and cream in its core,
+/// since the filters over the three colours overlap, and each sees 3 % of the light as such.
 __host__ __device__ inline glm::vec3 exposed(glm::vec3 light, float exposure) {
+    light = glm::mix(light, glm::vec3(glm::dot(light, glm::vec3(0.2126f, 0.7152f, 0.0722f))), 0.03f);
     return glm::vec3(1.0f) - glm::exp(-exposure * light);
 }
 //! [film]

@@ -20,7 +20,8 @@ struct Choices {
     bool no_shadows = false, no_skipping = false, no_detail = false, still_only = false;
 };
 
-VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& choices) {
+VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& choices,
+                         const std::string& name) {
     if (options.window) throw course::BadInput("--window: this chapter draws pictures only; 06 opens one");
     const auto want = [](bool good, const std::string& sentence) {
         if (!good) throw course::BadInput(sentence);
@@ -29,7 +30,7 @@ VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& c
     want(choices.step_in_cells >= 0 && choices.step_in_cells <= 1000,
          "--march-step must be from 0 (the scene's) to 1000 cells");
     want(choices.samples >= 0 && choices.samples <= 64, "--samples must be from 0 (the scene's) to 64");
-    VolumeScene scene = volume::make_scene(options.scene, options.particles, options.seed);
+    VolumeScene scene = volume::make_scene(name, options.particles, options.seed);
     if (options.dt_s > 0) scene.dt_s = options.dt_s;
     if (choices.cell_m > 0) scene.look.cell_m = choices.cell_m;
     if (choices.step_in_cells > 0) scene.look.step_in_cells = choices.step_in_cells;
@@ -85,7 +86,9 @@ void cost(course::Program& program, const VolumeScene& scene, Particles& particl
     program.result().table(table);
 }
 
-void draw_pictures(course::Program& program, const VolumeScene& scene, const Choices& choices) {
+/// @param with_parts  the same fire once more, with one thing more from picture to picture
+void draw_pictures(course::Program& program, const VolumeScene& scene, const Choices& choices,
+                   bool with_parts) {
     const course::ProgramOptions& o = program.options;
     Particles particles(scene);
     const int frames = choices.still_only ? 1 : kLapse;
@@ -98,14 +101,15 @@ void draw_pictures(course::Program& program, const VolumeScene& scene, const Cho
     FireVolume fire(scene.look);
     Photographer photographer(o.width, o.height, scene.look);
     fill(fire, scene, particles);
-    save(program, "still.png", photographer.photograph(fire, camera_of(scene)),
+    save(program, scene.name + ".png", photographer.photograph(fire, camera_of(scene)),
          "The " + scene.name + " after " + course::format_number(particles.time_s()) + " s");
     if (choices.still_only) return;
 
     fire.look().samples = 1;  // half as large, and many: one ray a pixel will do
     const int width = std::max(1, o.width / 2), height = std::max(1, o.height / 2);
-    save(program, "parts.png", parts(scene, particles, width, height),
-         "Flame alone; black smoke; smoke lit by the fire; and shading itself");
+    if (with_parts)
+        save(program, scene.name + "_parts.png", parts(scene, particles, width, height),
+             "Flame alone; black smoke; smoke lit by the fire; and shading itself");
     Photographer small(width, height, scene.look);
     std::vector<course::Image> lapse;
     for (int frame = 0; frame < frames; ++frame) {
@@ -115,7 +119,7 @@ void draw_pictures(course::Program& program, const VolumeScene& scene, const Cho
         lapse.push_back(small.photograph(fire, camera_of(scene)));
         progress.update(scene.warm_up_steps + o.steps + frame);
     }
-    save(program, "time_lapse.png", course::contact_sheet(lapse, 3),
+    save(program, scene.name + "_time_lapse.png", course::contact_sheet(lapse, 3),
          "Time lapse, row by row, " + course::format_number(between * scene.dt_s) + " s apart");
     cost(program, scene, particles, fire, small);
 }
@@ -128,7 +132,8 @@ int main(int argc, char** argv) {
         "Soot and heat of particles on a grid: flames glow, smoke hides, and shades itself");
     program.options.particles = 40000;
     program.options.steps = 0;
-    program.scenes = volume::scene_names();
+    program.scenes = {"all"};
+    for (const std::string& name : volume::scene_names()) program.scenes.push_back(name);
     Choices choices;
     program.option("--cell", choices.cell_m, "edge of a cell in m (0: the scene's)");
     program.option("--march-step", choices.step_in_cells, "step of the march in cells (0: the scene's)");
@@ -142,17 +147,24 @@ int main(int argc, char** argv) {
     program.study(skipping_question(), study_skipping);
     program.study(sprites_question(), study_sprites);
     return program.run(argc, argv, [&] {
-        const VolumeScene scene = chosen_scene(program.options, choices);
-        if (program.options.explain) {
-            std::printf("%s", explain(scene).c_str());
+        const course::ProgramOptions& options = program.options;
+        std::vector<VolumeScene> scenes;
+        for (const std::string& name : volume::scene_names())
+            if (options.scene == "all" || options.scene == name)
+                scenes.push_back(chosen_scene(options, choices, name));
+        if (options.explain) {
+            for (const VolumeScene& scene : scenes) std::printf("%s", explain(scene).c_str());
             return;
         }
         program.result().device = course::device_name();
-        const grid::CellGrid cells = grid_over(scene.look.low_m, scene.look.high_m, scene.look.cell_m);
-        course::require_memory(double(cells.cell_count()) * double(Splatter::kBytesPerCell) +
-                               double(program.options.particles) * double(fire::kFlameBytes) +
-                               80.0 * program.options.width * program.options.height);
-        draw_pictures(program, scene, choices);
+        for (const VolumeScene& scene : scenes) {
+            const grid::CellGrid cells = grid_over(scene.look.low_m, scene.look.high_m, scene.look.cell_m);
+            course::require_memory(double(cells.cell_count()) * double(Splatter::kBytesPerCell) +
+                                   double(options.particles) * double(fire::kFlameBytes) +
+                                   80.0 * options.width * options.height);
+        }
+        for (const VolumeScene& scene : scenes)
+            draw_pictures(program, scene, choices, scenes.size() == 1 || scene.name == "campfire");
         if (program.result().device.find("simulator") != std::string::npos)
             program.result().note("Times of the CUDA simulator, on the CPU: they say nothing about a GPU.");
     });

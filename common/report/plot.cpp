@@ -78,8 +78,8 @@ std::string plot_script(const StudyData& study) {
         "set xlabel " + quoted(study.error_against_time ? "run time (s)" : axis_name(study.parameter)) + "\n";
     script += "set ylabel " + quoted(study.error_against_time ? study.error_kind : "run time (s)") + "\n";
     if (study.error_against_time && study.error_kind.size() > 48)
-        script += "set ylabel 'error'\nset title " + quoted("error: " + study.error_kind) +
-                  " font ',11' tc rgb '#52616f'\n";
+        script += "set ylabel 'error'\nset tmargin 3\nset label 1 " + quoted("error: " + study.error_kind) +
+                  " at screen 0.02, screen 0.96 left font ',11' tc rgb '#52616f'\n";
     const std::vector<Look> looks = looks_of(study.lines);
     for (std::size_t k = 0; k < study.lines.size(); ++k) {
         std::string rows;

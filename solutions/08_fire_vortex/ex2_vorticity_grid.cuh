@@ -1,14 +1,14 @@
 // Exercise 08.2: the vorticity of every cell.
 //
 // The chapter's shading asks for the vorticity at every particle: six samples of the grid each, forty-eight
-// reads. With many more particles than cells it is cheaper to work it out once for every cell, and to sample the
-// result as if it were a velocity. Vorticity is the curl of the velocity:
+// reads. With many more particles than cells it is cheaper to work it out once for every cell, and to sample
+// the result as if it were a velocity. Vorticity is the curl of the velocity:
 //
 //     omega = (dw/dy - dv/dz, du/dz - dw/dx, dv/dx - du/dy)
 //
 // Take differences between the two neighbours along each axis, over the distance between them. At the grid's
-// rim one neighbour is missing: there the cell itself takes its place, and the distance is one edge instead of
-// two. Along an axis with one cell nothing changes: the difference is 0.
+// rim one neighbour is missing: there the cell itself takes its place, and the distance is one edge instead
+// of two. Along an axis with one cell nothing changes: the difference is 0.
 #pragma once
 #include <glm/geometric.hpp>
 
@@ -19,16 +19,16 @@ namespace vortex {
 
 // d(field)/d(axis) at a cell, per metre. axis: 0 is x, 1 is y, 2 is z.
 inline __device__ glm::vec3 difference(const float4* field, const CellGrid& grid, glm::ivec3 cell, int axis) {
-    // TODO(8.2): the two neighbours along the axis (never outside of the grid), and how many edges lie between
-    // them. About 6 lines.
+    // TODO(8.2): the two neighbours along the axis (never outside of the grid),
+    // and how many edges lie between them. About 6 lines.
     // <solution>
     glm::ivec3 before = cell, after = cell;
     before[axis] = cell[axis] > 0 ? cell[axis] - 1 : 0;
     after[axis] = cell[axis] + 1 < grid.size[axis] ? cell[axis] + 1 : cell[axis];
     const int edges = after[axis] - before[axis];
     if (edges == 0) return glm::vec3(0);
-    const glm::vec3 change = grid::xyz(field[grid::cell_number(grid, after)]) -
-                             grid::xyz(field[grid::cell_number(grid, before)]);
+    const glm::vec3 change =
+        grid::xyz(field[grid::cell_number(grid, after)]) - grid::xyz(field[grid::cell_number(grid, before)]);
     return change * (grid.cells_per_m / float(edges));
     // <stub>
     //| return glm::vec3(float(course::kTodo));

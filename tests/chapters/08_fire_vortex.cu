@@ -5,7 +5,7 @@
 #include <complex>
 #include <limits>
 
-#include "05_spatial_grid/bounds.cuh"
+#include "04_parallel_patterns/bounds.cuh"
 #include "08_fire_vortex/explain.h"
 #include "08_fire_vortex/studies.cuh"
 #include "08_fire_vortex/vortex_cpu.h"

@@ -807,7 +807,7 @@ TEST_CASE("a short run leaves a picture; bad input ends with a sentence and exit
     const course::ProgramRun run = course::run_program(
         kProgram, "--scene torch --particles 200 --cell 0.03 --width 64 --height 36 --still-only" + out);
     CHECK(run.exit_code == 0);
-    CHECK(std::filesystem::exists(folder.path() / "still.png"));
+    CHECK(std::filesystem::exists(folder.path() / "torch.png"));
     CHECK(std::filesystem::exists(folder.path() / "result.json"));
     const std::string small = " --still-only --width 64 --height 36 --cell 0.04";
     CHECK(course::run_program(kProgram, "--particles 1" + small + out).exit_code == 0);
