@@ -81,7 +81,7 @@ void Program::check_measures() const {
 void Program::measure() {
     const auto save = [&](const auto& measured, const std::string& name) {
         print_rows(measured);
-        write_file(options.out / (name + ".json"), measured.json(command_));
+        write_file(options.out / (name + ".json"), measured.json());
         write_file(options.out / (name + ".csv"), measured.csv());
         if (!options.csv.empty()) write_file(options.csv, measured.csv());
     };

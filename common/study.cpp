@@ -29,13 +29,12 @@ std::string processor_name() {
 }
 
 nlohmann::ordered_json start_json(const char* kind, const std::string& chapter, const std::string& name,
-                                  const std::string& question, const std::string& command) {
+                                  const std::string& question) {
     nlohmann::ordered_json json;
     json["kind"] = kind;
     json["chapter"] = chapter;
     json["name"] = name;
     json["question"] = question;
-    json["command"] = command;
     return json;
 }
 
@@ -74,8 +73,8 @@ std::string Study::csv() const {
     return table.csv();
 }
 
-std::string Study::json(const std::string& command) const {
-    nlohmann::ordered_json json = start_json("study", chapter_, question.name, question.question, command);
+std::string Study::json() const {
+    nlohmann::ordered_json json = start_json("study", chapter_, question.name, question.question);
     json["error_kind"] = question.error_kind;
     json["parameter"] = question.parameter;
     json["plot"] =
@@ -148,9 +147,8 @@ std::string StabilityMap::csv() const {
     return table.csv();
 }
 
-std::string StabilityMap::json(const std::string& command) const {
-    nlohmann::ordered_json json =
-        start_json("stability", chapter_, question.name, question.question, command);
+std::string StabilityMap::json() const {
+    nlohmann::ordered_json json = start_json("stability", chapter_, question.name, question.question);
     json["criterion"] = question.criterion;
     json["theory"] = question.theory;
     json["stiffness"] = question.stiffness;

@@ -67,7 +67,7 @@ class Study {
     /// seconds_per_step,backend,device; then steps,seconds_low,seconds_high,repeats (quartiles per step).
     std::string csv() const;
     /// The same and what the question was, for the report.
-    std::string json(const std::string& command) const;
+    std::string json() const;
 
   private:
     std::string chapter_;
@@ -117,7 +117,7 @@ class StabilityMap {
 
     /// stability,method,dt,stiffness,stable,measured_limit,theory_limit
     std::string csv() const;
-    std::string json(const std::string& command) const;
+    std::string json() const;
 
   private:
     std::string chapter_;

@@ -64,6 +64,14 @@ std::string table_of(const StabilityData& data) {
     return html + "</table>";
 }
 
+/// The command that measures it again, as a reader types it. The file is called study_NAME.json or
+/// stability_NAME.json.
+std::string command_of(const Origin& origin, const fs::path& json) {
+    const std::string file = json.filename().string();
+    return "./course run " + origin.chapter.substr(0, 2) + " --" + file.substr(0, file.find('_')) + " " +
+           origin.name + (origin.quick ? " --quick" : "");
+}
+
 /// Draws it, and returns its part of the page.
 template <class Data>
 std::string section(const Data& data, const fs::path& json, const std::string& link, int height_px) {
@@ -72,7 +80,7 @@ std::string section(const Data& data, const fs::path& json, const std::string& l
     return "<h3 id=\"" + escape_html(o.chapter + "_" + o.name) + "\">" + escape_html(o.question) +
            "</h3>\n<figure class=\"wide\"><a href=\"" + link + ".svg\"><img src=\"" + link + ".svg\" alt=\"" +
            escape_html(o.question) + "\"></a></figure>\n<p class=\"conclusion\">" +
-           paragraphs(conclusion(data)) + "</p>\n<p><code>" + escape_html(o.command) +
+           paragraphs(conclusion(data)) + "</p>\n<p><code>" + escape_html(command_of(o, json)) +
            "</code> &middot; backend: " + escape_html(o.backend) + ", " + escape_html(o.device) +
            (o.quick ? " &middot; quick: few and small points" : "") + " &middot; <a href=\"" + link +
            ".csv\">CSV</a>, <a href=\"" + link +

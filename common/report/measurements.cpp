@@ -19,7 +19,7 @@ nlohmann::json parse(const std::filesystem::path& file, const std::string& kind)
 }
 
 Origin origin_of(const nlohmann::json& json) {
-    return {json.at("chapter"), json.at("name"),   json.at("question"), json.at("command"),
+    return {json.at("chapter"), json.at("name"),   json.at("question"),
             json.at("backend"), json.at("device"), json.at("quick")};
 }
 

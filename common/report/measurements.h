@@ -21,7 +21,7 @@ struct Line {
 
 /// What every measurement says of itself.
 struct Origin {
-    std::string chapter, name, question, command, backend, device;
+    std::string chapter, name, question, backend, device;
     bool quick = false;
 };
 

@@ -24,7 +24,7 @@ Line power_law(const std::string& method, double c, double order, double first_s
 }
 
 StudyData study_of(std::vector<Line> lines) {
-    return {{"00_test", "s", "Which?", "command", "cpu", "device", false},
+    return {{"00_test", "s", "Which?", "cpu", "device", false},
             "m",
             "dt_s",
             true,
@@ -50,14 +50,14 @@ std::string study_json() {
         study.add(
             {"second, float", 1.0 / k, 1, k == 1 ? NAN : 0.1 / (k * k), {2e-3, 1e-3, 2e-3, 5}, double(k)});
     }
-    return study.json("ch00 --study s");
+    return study.json();
 }
 
 std::string map_json() {
     course::StabilityMap map({"map", "Which?", "bounded", "2 / k", "k (1/s)"}, "00_test", false);
     for (double k : {0.0, 1.0, 100.0})
         map.column("m", k, 2 / (k + 1), {0.5, 1, 2}, 3, [&](double dt) { return dt * (k + 1) < 1.9; });
-    return map.json("ch00 --stability map");
+    return map.json();
 }
 
 }  // namespace
@@ -203,6 +203,8 @@ TEST_CASE("gnuplot draws studies and maps as SVG and PNG") {
     CHECK(contains(html, "src=\"report/00_test/study_s.svg\""));
     CHECK(contains(html, "Which &quot;one&quot; &lt;is&gt; it?"));
     CHECK(contains(html, "<td>unstable</td>"));
+    CHECK(contains(html, "<code>./course run 00 --study s</code>"));
+    CHECK(contains(html, "<code>./course run 00 --stability map</code>"));
 }
 
 TEST_CASE("a damaged file is named and left out, the others are shown") {
