@@ -331,12 +331,12 @@ inline std::string explain(const FireScene& scene, bool draws) {
 
 //! [check]
 /// @throws course::BadInput if a life could end in the step in which it begins, or a number makes no sense
-inline void check(const FireScene& scene) {
+inline void check(const Fire& fire, const std::string& name, float dt_s) {
     const auto want = [&](bool good, const std::string& sentence) {
-        if (!good) throw course::BadInput("the " + scene.name + ": " + sentence);
+        if (!good) throw course::BadInput("the " + name + ": " + sentence);
     };
-    for (int k = 0; k < scene.fire.kind_count; ++k) {
-        const ParticleKind& kind = scene.fire.kind[k];
+    for (int k = 0; k < fire.kind_count; ++k) {
+        const ParticleKind& kind = fire.kind[k];
         const auto part = [](float x) { return x >= 0 && x < 1; };  // false for NaN, too
         want(part(kind.life_spread) && part(kind.decay_spread),
              "spreads of life and decay must be from 0 to below 1");
@@ -346,12 +346,15 @@ inline void check(const FireScene& scene) {
              "buoyancy must be a number, and an emitter's size and the life at its edge above 0");
         const float shortest_s = kind.life_s * (1 - kind.life_spread) / (1 + kind.decay_spread) *
                                  (kind.edge_life < 1 ? kind.edge_life : 1.0f);
-        want(scene.dt_s <= 0.5f * shortest_s, "some particles live only " + std::to_string(shortest_s) +
-                                                  " s: the time step must be at most half of that, not " +
-                                                  std::to_string(scene.dt_s) + " s");
+        want(dt_s <= 0.5f * shortest_s, "some particles live only " + std::to_string(shortest_s) +
+                                            " s: the time step must be at most half of that, not " +
+                                            std::to_string(dt_s) + " s");
     }
 }
 //! [check]
+inline void check(const FireScene& scene) {
+    check(scene.fire, scene.name, scene.dt_s);
+}
 
 /// The lights at one moment: they waver as a flame does, faster than a wave and slower than a flash.
 inline std::vector<FireLight> lights_at(const FireScene& scene, float time_s) {

@@ -62,6 +62,7 @@ VortexScene make(const course::ProgramOptions& options, const Choices& choices, 
     }
     if (options.steps > 0) scene.fire.warm_up_steps = options.steps;
     check(m);
+    if (m.vortons == 0) fire::check(scene.fire);  // else the vortons' own watch speaks first
     return scene;
 }
 
@@ -202,6 +203,7 @@ int main(int argc, char** argv) {
         const course::ProgramOptions& options = program.options;
         const std::string first = options.scene == "all" ? "campfire" : options.scene;
         if (options.explain) {
+            std::printf("%s:\n", first.c_str());
             print_explanation(make(options, choices, first));
             return;
         }

@@ -26,6 +26,7 @@ VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& c
     const auto want = [](bool good, const std::string& sentence) {
         if (!good) throw course::BadInput(sentence);
     };
+    want(!choices.still_only || options.csv.empty(), "--still-only makes no table that --csv could take");
     want(choices.cell_m >= 0 && choices.cell_m <= 1, "--cell must be from 0 (the scene's) to 1 m");
     want(choices.step_in_cells >= 0 && choices.step_in_cells <= 1000,
          "--march-step must be from 0 (the scene's) to 1000 cells");
@@ -38,6 +39,7 @@ VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& c
     if (choices.no_shadows) scene.look.shadows = false;
     if (choices.no_skipping) scene.look.block_edge = 0;
     if (choices.no_detail) scene.look.detail.reach_m = 0;
+    if (!scene.stirred) fire::check(scene.fire, scene.name, scene.dt_s);  // vortons watch over their own step
     return scene;
 }
 
@@ -153,7 +155,8 @@ int main(int argc, char** argv) {
             if (options.scene == "all" || options.scene == name)
                 scenes.push_back(chosen_scene(options, choices, name));
         if (options.explain) {
-            for (const VolumeScene& scene : scenes) std::printf("%s", explain(scene).c_str());
+            for (const VolumeScene& scene : scenes)
+                std::printf("%s:\n%s", scene.name.c_str(), explain(scene).c_str());
             return;
         }
         program.result().device = course::device_name();
