@@ -126,10 +126,13 @@ std::string alone_conclusion(const Line& line) {
     if (points.size() == 1)
         return "An error of " + format_number(first.error) + " in " + format_number(first.seconds) +
                " s is its best.";
+    const std::string law = last.seconds < 1.5 * first.seconds
+                                ? "the error falls and the time hardly grows."
+                                : "the error falls as the time to the power " +
+                                      fixed(slope(points, &Point::seconds, &Point::error)) + ".";
     return "From an error of " + format_number(first.error) + " in " + format_number(first.seconds) +
-           " s to " + format_number(last.error) + " in " + format_number(last.seconds) +
-           " s: the error falls as the time to the power " +
-           fixed(slope(points, &Point::seconds, &Point::error)) + "." + floors({line});
+           " s to " + format_number(last.error) + " in " + format_number(last.seconds) + " s: " + law +
+           floors({line});
 }
 
 std::string error_conclusion(const StudyData& study) {
