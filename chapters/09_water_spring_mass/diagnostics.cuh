@@ -58,9 +58,12 @@ inline __global__ void summary_kernel(Summary* chunks, const float4* position, c
             for (const float overlap : {radius - (x[axis] - low[axis]), radius - (high[axis] - x[axis])})
                 if (overlap > 0) sum.elastic_J += 0.5 * k * overlap * overlap;
         std::uint32_t contacts = 0;
-        list.for_each(i, [&](std::uint32_t j) {
+        const auto touches = [&](std::uint32_t j) {
+            const glm::vec3 apart = x - grid::xyz(position[j]);
+            return glm::dot(apart, apart) < d * d;
+        };
+        list.for_each_near(i, touches, [&](std::uint32_t j) {
             const float distance = glm::length(x - grid::xyz(position[j])), overlap = d - distance;
-            if (!(overlap > 0)) return;
             ++contacts;
             sum.deepest_m = fmaxf(sum.deepest_m, overlap);
             // Each pair is met twice: half of its energy each time. Attraction pulls from distance d inwards.

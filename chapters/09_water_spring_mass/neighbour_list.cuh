@@ -13,7 +13,7 @@ namespace spring_mass {
 /// threads of a warp read 32 successive words; on a CPU the whole group fits into the first-level cache.
 struct NeighbourList {
     static constexpr std::uint32_t kWarp = 32;
-    static constexpr std::uint32_t kCapacity = 32;  ///< longest list; hard spheres of 1.3 diameters: 21
+    static constexpr std::uint32_t kCapacity = 32;  ///< longest list. Marbles in a heap: 13 at a skin of 0.4
 
     const std::uint32_t* neighbour;
     const std::uint32_t* count;     ///< of each marble; above kCapacity: its list is not complete
@@ -26,19 +26,27 @@ struct NeighbourList {
     }
     static std::size_t words_for(std::size_t n) { return (n + kWarp - 1) / kWarp * kWarp * kCapacity; }
 
-    /// Calls visit(j) for each candidate of marble i. Where so many crowd together that the list had no room,
-    /// for all marbles of the cells around: more work, the same contacts.
-    template <class Visit>
-    __host__ __device__ void for_each(std::uint32_t i, Visit visit) const {
-        if (count[i] <= kCapacity) {
-            const std::uint32_t* entry = neighbour + place(i, 0);
-            for (std::uint32_t k = 0; k < count[i]; ++k) visit(entry[k * kWarp]);
+    /// Calls visit(j) for each marble of which is_near(j) is true.
+    ///
+    /// First a look at all of the list, which leaves one bit per entry; then only those whose bit is set. A
+    /// look is short and the same for all, while one in five entries is near and nobody can guess which: an
+    /// `if` around the visit would make a CPU guess wrong, and the threads of a warp wait for each other.
+    template <class IsNear, class Visit>
+    __host__ __device__ void for_each_near(std::uint32_t i, IsNear is_near, Visit visit) const {
+        const std::uint32_t length = count[i];
+        const std::uint32_t* entry = neighbour + place(i, 0);
+        if (length <= kCapacity) {
+            std::uint32_t near = 0;
+            for (std::uint32_t k = 0; k < length; ++k) near |= std::uint32_t(is_near(entry[k * kWarp])) << k;
+            for (; near != 0; near &= near - 1) visit(entry[(__ffs(int(near)) - 1) * kWarp]);
         } else {
+            // So many crowd together that the list had no room: ask all marbles of the cells around. More
+            // work, the same contacts.
             grid::for_each_row(cells, grid::xyz(listed_position[i]),
                                [&](std::uint32_t first_cell, std::uint32_t last_cell) {
                                    for (std::uint32_t j = ranges.cell_first[first_cell];
                                         j < ranges.cell_last[last_cell]; ++j)
-                                       if (j != i) visit(j);
+                                       if (j != i && is_near(j)) visit(j);
                                });
         }
     }

@@ -195,3 +195,333 @@ TEST_CASE("a random scene made just now goes the same way in LAMMPS") {
     CHECK(kernels < 5 * rounding);
     CHECK(rounding < 1e-3);  // of a diameter: else the comparison would say little
 }
+
+// ------------------------------------------------------------------------------- known answers, in double
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Two marbles of mass 1 that meet head on with relative speed 1; omega = sqrt(k / m_eff) = 1.
+struct Bounce {
+    double restitution, time, deepest;  // time in contact and largest overlap, in units of 1 / omega
+};
+Bounce bounce(double zeta, double dt_s, double phase = 0.5) {
+    MaterialOf<double> material{1, 1, 0.5, 2 * zeta, 0, 0, 0, 0, {0, 0, 0}};
+    const double gap = phase * dt_s;  // they touch that long after the start
+    MarblesCpu two{material,
+                   glm::dvec3(-100),
+                   glm::dvec3(100),
+                   {{-0.5 - gap / 2, 0, 0}, {0.5 + gap / 2, 0, 0}},
+                   {{0.5, 0, 0}, {-0.5, 0, 0}}};
+    forces_cpu(two, two.velocity);
+    Bounce result{0, 0, 0};
+    double before = -gap;
+    for (int step = 1; step * dt_s < 100; ++step) {
+        step_cpu(two, dt_s);
+        const double overlap = 1 - (two.position[1].x - two.position[0].x);
+        result.deepest = std::max(result.deepest, overlap);
+        if (result.deepest > 0 && overlap <= 0) {  // apart again; the moment between the steps, linearly
+            result.time = (step - overlap / (overlap - before)) * dt_s - gap;
+            result.restitution = two.velocity[1].x - two.velocity[0].x;
+            return result;
+        }
+        before = overlap;
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a bounce is as high, as long and as deep as the closed form says") {
+    // Reference (3_contact single_collision; the dashpot may pull): zeta, e, omega t, deepest omega / v.
+    struct Row {
+        double zeta, e, time, deepest;
+    };
+    for (const Row& row : {Row{0.0, 1.0, 3.141592653589793, 1.0},
+                           Row{0.05, 0.8544678930067565, 3.1455270228880017, 0.9266920209946192},
+                           Row{0.1, 0.7292476142876709, 3.1574194169982763, 0.8626003696508481},
+                           Row{0.2, 0.526620599330303, 3.20637457540466, 0.7561349268383103},
+                           Row{0.2154537, 0.5000001045296812, 3.217150466669195, 0.7418107935020142},
+                           Row{0.5, 0.16303353482158048, 3.6275987284684357, 0.5462930158736014},
+                           Row{0.9, 0.001523755820519411, 7.20730784145668, 0.39405931977518516}}) {
+        const Bounce got = bounce(row.zeta, 1e-4);
+        // The dashpot sees the velocity of half a step ago, and the force jumps where contact begins: errors
+        // of dt = 1e-4. At zeta 0.9 they part at a thousandth of the speed, so the end is hard to see.
+        CHECK(std::abs(got.restitution - row.e) < 2e-4);
+        CHECK(std::abs(got.time - row.time) < (row.zeta > 0.8 ? 0.05 : 5e-4));
+        CHECK(std::abs(got.deepest - row.deepest) < 2e-4);
+        // And the damping that the program chooses for a restitution is the one of that zeta.
+        if (row.zeta > 0)
+            CHECK(std::abs(damping_for_restitution(float(row.e), 0.5f, 1) / (2 * row.zeta) - 1) < 1e-5);
+    }
+}
+
+TEST_CASE("without damping the error of a bounce is the tabulated one, of third order") {
+    // Reference (3_contact restitution_error_vs_dt, zeta 0, LF): worst of ten phases, for n steps per
+    // contact.
+    struct Row {
+        int n;
+        double error;
+    };
+    for (const Row& row :
+         {Row{10, 0.0019555107293767193}, Row{20, 0.00023489257793862794}, Row{50, 1.4758720139340653e-05},
+          Row{100, 1.83519591345771e-06}, Row{200, 2.288375527959019e-07}}) {
+        double worst = 0;
+        for (int k = 0; k < 10; ++k)
+            worst = std::max(worst, std::abs(bounce(0, kPi / row.n, (k + 0.5) / 10).restitution - 1));
+        MESSAGE(row.n << " " << worst / row.error);
+        CHECK(std::abs(worst / row.error - 1) < 0.1);
+    }
+}
+
+TEST_CASE("a stack stands pressed by its weight, in double and in the kernels") {
+    // Reference (3_contact static_stack): overlaps m g / k times the number of marbles carried.
+    const double mg_per_k = 4.10920319089545e-05, r = 0.01;
+    for (int n : {1, 10}) {
+        MaterialOf<double> material{2 * r, 0.004188790204786391, 1000, 300, 0, 0, 0, 0, {0, -9.81, 0}};
+        std::vector<glm::dvec3> position;
+        for (int j = 0; j < n; ++j) position.push_back({0.05, (2 * j + 1) * r, 0.05});
+        MarblesCpu stack{material, glm::dvec3(0), glm::dvec3(0.1, 1, 0.1), position,
+                         std::vector<glm::dvec3>(n, glm::dvec3(0))};
+        forces_cpu(stack, stack.velocity);
+        const double dt_s = 0.5 * time_step_limit_s(material, Packing::chain);
+        Marbles marbles(in_float(material), in_box(stack.low_m, stack.high_m), in_float4(position),
+                        in_float4(stack.velocity));
+        // Slowest mode of ten: 73/s, whose dashpot takes a factor e in 2 k / (c omega^2) = 0.6 s.
+        const int steps = int((n == 1 ? 0.5 : 8.0) / dt_s);
+        for (int step = 0; step < steps; ++step) {
+            step_cpu(stack, dt_s);
+            marbles.step(float(dt_s));
+        }
+        const auto x = by_id(marbles, marbles.positions());
+        const double total = mg_per_k * n * (n + 1) / 2;
+        CHECK(std::abs(((2 * n - 1) * r - stack.position[n - 1].y) / total - 1) < 1e-4);
+        for (int j = 0; j < n; ++j) {
+            const double exact = mg_per_k * (n - j);
+            const double overlap =
+                j == 0 ? r - stack.position[0].y : 2 * r - (stack.position[j].y - stack.position[j - 1].y);
+            const double in_kernels = j == 0 ? r - double(x[0].y) : 2 * r - (double(x[j].y) - x[j - 1].y);
+            CHECK(std::abs(overlap / exact - 1) < 1e-4);
+            // fp32: heights up to 0.19 m are multiples of 1.5e-8 m, 0.04 % of the smallest overlap. A marble
+            // stops moving when a step is less than half of that, here up to ten of them from its place.
+            CHECK(std::abs(in_kernels - exact) < 1.5e-7);
+        }
+        MESSAGE("top of " << n << ": kernels off by " << (2 * n - 1) * r - total - double(x[n - 1].y)
+                          << " m");
+    }
+}
+
+TEST_CASE("a row of touching marbles passes a blow on as an integrated chain of springs does") {
+    // Reference (3_contact newtons_cradle_linear), for touching balls: the last one does not take all.
+    const std::vector<std::vector<double>> rows = {{0.0, 1.0},
+                                                   {-0.1302617, 0.1502296, 0.9800321},
+                                                   {-0.1322795, -0.0753292, -0.0310108, 0.2962178, 0.9424017},
+                                                   {-0.1322795, -0.075412, -0.0546622, -0.0435725, -0.0365582,
+                                                    -0.0315846, -0.021265, 0.0787645, 0.4388983, 0.8776712}};
+    for (const std::vector<double>& expected : rows) {
+        const int n = int(expected.size());
+        // Balls large against their overlap of at most 1: touching ones 100 apart.
+        MaterialOf<double> material{100, 1, 1, 0, 0, 0, 0, 0, {0, 0, 0}};
+        std::vector<glm::dvec3> position, velocity(n, glm::dvec3(0));
+        for (int i = 0; i < n; ++i) position.push_back({100.0 * i, 0, 0});
+        velocity[0].x = 1;
+        MarblesCpu chain{material, glm::dvec3(-1e3), glm::dvec3(3e3), position, velocity};
+        forces_cpu(chain, chain.velocity);
+        Marbles marbles(in_float(material), in_box(chain.low_m, chain.high_m), in_float4(position),
+                        in_float4(velocity));
+        for (int step = 0; step < 3000; ++step) {
+            step_cpu(chain, 0.02);
+            marbles.step(0.02f);
+        }
+        const auto v = by_id(marbles, marbles.velocities());
+        double momentum = 0, energy = 0;
+        for (int i = 0; i < n; ++i) {
+            CHECK(std::abs(chain.velocity[i].x - expected[i]) <
+                  1e-3);  // at this step, as the reference has it
+            // fp32: places up to 900 are 6e-5 apart, and so is the overlap that decides the force.
+            CHECK(std::abs(v[i].x - expected[i]) < 3e-3);
+            momentum += chain.velocity[i].x;
+            energy += chain.velocity[i].x * chain.velocity[i].x;
+        }
+        CHECK(std::abs(momentum - 1) < 1e-12);
+        CHECK(std::abs(energy - 1) < 1e-4);  // (omega dt)^2 / 4 while they touch
+    }
+}
+
+TEST_CASE("two attracting marbles come to rest where push and pull are equal") {
+    // Reference (3_contact attraction_equilibrium): k = 0.5, a = 0.05, d = 1: r = k d / (k + a).
+    MaterialOf<double> material{1, 1, 0.5, 0.5, 0, 0, 0.05, 0, {0, 0, 0}};
+    const std::vector<glm::dvec3> position{{-0.49, 0, 0}, {0.49, 0, 0}}, velocity(2, glm::dvec3(0));
+    MarblesCpu two{material, glm::dvec3(-5), glm::dvec3(5), position, velocity};
+    forces_cpu(two, two.velocity);
+    Marbles marbles(in_float(material), in_box(two.low_m, two.high_m), in_float4(position),
+                    in_float4(velocity));
+    for (int step = 0; step < 2000; ++step) {
+        step_cpu(two, 0.05);
+        marbles.step(0.05f);
+    }
+    const auto x = by_id(marbles, marbles.positions());
+    CHECK(std::abs(two.position[1].x - two.position[0].x - 0.9090909090909091) < 1e-6);
+    CHECK(std::abs(x[1].x - x[0].x - 0.9090909090909091) < 1e-6);
+}
+
+// ------------------------------------------------------------------------------------------ the kernels
+
+namespace {
+
+/// n marbles at random in a box of that edge; some overlap.
+Points random_cloud(std::size_t n, double edge, double speed, unsigned seed) {
+    course::set_seed(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    Points points;
+    for (std::size_t i = 0; i < n; ++i) {
+        // Exactly floats, so that kernels and reference start from the same numbers.
+        const auto place = [&] { return double(float(edge * unit(random))); };
+        points.position.push_back({place(), place(), place()});
+        const auto fast = [&] { return double(float(speed * (2 * unit(random) - 1))); };
+        points.velocity.push_back({fast(), fast(), fast()});
+    }
+    return points;
+}
+
+std::vector<float4> accelerations_cpu(const MaterialOf<double>& material, double edge, const Points& points) {
+    MarblesCpu reference{material, glm::dvec3(0), glm::dvec3(edge), points.position, points.velocity};
+    forces_cpu(reference, reference.velocity);
+    std::vector<glm::dvec3> a;
+    for (const glm::dvec3& force : reference.force_N) a.push_back(force / material.mass_kg);
+    return in_float4(a);
+}
+
+double largest(const std::vector<float4>& a) {
+    double most = 0;
+    for (const float4& p : a)
+        most = std::max({most, std::abs(double(p.x)), std::abs(double(p.y)), std::abs(double(p.z))});
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("forces of the kernels are those of the reference, with every combination of terms") {
+    for (int terms = 0; terms < 8; ++terms)
+        for (double edge : {12.0, 3.0}) {  // 3: forty marbles a cell, so that most lists are too short
+            MaterialOf<double> material{1, 2, 50, 3, 0, 0.25, 0, 0, {0.5, -2, 0.25}};
+            if (terms & 1) material.tangential_damping_per_s = 8;
+            if (terms & 2) material.attraction_N_per_m = 4;
+            if (terms & 4) material.drag_per_s = 0.5;
+            const Points points = random_cloud(1000, edge, 2, 11 + terms);
+            const auto expected = accelerations_cpu(material, edge, points);
+            Marbles marbles(in_float(material), in_box(glm::dvec3(0), glm::dvec3(edge)),
+                            in_float4(points.position), in_float4(points.velocity));
+            std::uint32_t longest = 0;
+            for (const std::uint32_t length : marbles.list_lengths().download())
+                longest = std::max(longest, length);
+            CHECK((longest > NeighbourList::kCapacity) == (edge < 10));
+            // fp32: overlaps of 1 known to 1e-6, up to 100 of them added; and marbles that touch by less than
+            // that, whose overlap is of no account, but whose dashpot acts or not: 3 m_eff / m v = 10.
+            const double dashpot = edge < 10 ? 1e-4 : 1e-5;
+            course::check_close(by_id(marbles, marbles.accelerations()), expected,
+                                {dashpot * largest(expected)}, "acceleration");
+        }
+}
+
+TEST_CASE("a skin changes the work and not the motion") {
+    const Points points = random_cloud(600, 10, 1, 3);
+    MaterialOf<double> material{0.8, 1, 200, 2, 1, 0.3, 0, 0, {0, -1, 0}};
+    const auto run = [&](float skin) {
+        Marbles marbles(in_float(material), in_box(glm::dvec3(0), glm::dvec3(10)), in_float4(points.position),
+                        in_float4(points.velocity), skin);
+        for (int step = 0; step < 100; ++step) marbles.step(0.01f);
+        return std::make_pair(by_id(marbles, marbles.positions()), marbles.lists_made());
+    };
+    const auto [every_step, lists] = run(0);
+    CHECK(lists == 101);  // at the start, and then in each step
+    std::uint32_t before = lists;
+    for (float skin : {0.1f, 0.4f, 1.0f}) {
+        const auto [x, made] = run(skin);
+        CHECK(made < before);
+        before = made;
+        // Another list adds the same forces in another order: last digits, which contacts make larger. One
+        // contact missed for one step would be 200 x 0.01 m s^-2 x dt^2 and more: 2e-4, and grow.
+        CHECK(distance(in_double(x), in_double(every_step)) < 1e-3);
+        std::vector<glm::dvec3> a = in_double(x), b = in_double(every_step);
+        CHECK(median_distance(a, b) < 5e-6);
+    }
+}
+
+TEST_CASE("momentum stays: marbles that meet far from all walls") {
+    for (const bool attraction : {false, true}) {
+        Points points = random_cloud(800, 8, 3, 5);
+        MaterialOf<double> material{1, 1, 300, 4, 2, 0.4, attraction ? 20.0 : 0.0, 0, {0, 0, 0}};
+        Marbles marbles(in_float(material), in_box(glm::dvec3(-60), glm::dvec3(60)),
+                        in_float4(points.position), in_float4(points.velocity));
+        const auto momentum = [&] {
+            glm::dvec3 sum(0);
+            for (const glm::dvec3& v : in_double(marbles.velocities().download())) sum += v;
+            return sum;
+        };
+        const glm::dvec3 before = momentum();
+        for (int step = 0; step < 200; ++step) marbles.step(0.005f);
+        // Each kick of up to 5 m/s is rounded to 2e-7 of itself: 800 x 200 of them at random.
+        CHECK(glm::length(momentum() - before) < 800 * 200 * 1e-8);
+    }
+}
+
+TEST_CASE("without damping energy stays within the bound of the step, with it it only falls") {
+    for (const double damping : {0.0, 3.0}) {
+        Points points = random_cloud(300, 6, 1, 9);
+        // Start apart: a lattice.
+        for (int i = 0; i < 300; ++i)
+            points.position[i] = {0.6 + i % 6 * 0.95, 0.6 + i / 36 * 0.9, 0.6 + i / 6 % 6 * 0.95};
+        MaterialOf<double> material{0.88, 1, 400, damping, damping, 0.4, 0, 0, {0, 0, 0}};
+        Marbles marbles(in_float(material), in_box(glm::dvec3(0), glm::dvec3(6, 9, 6)),
+                        in_float4(points.position), in_float4(points.velocity));
+        Summarizer summarize(marbles.size());
+        const double start_J = summarize(marbles).energy_J(), dt_s = 0.2 * time_step_limit_s(material);
+        // Leapfrog keeps the energy of one contact up to (omega dt)^2 / 4, with omega^2 = 2 k / m of a pair;
+        // the rounding of fp32 overlaps (5e-7 x 400 N/m x 0.1 m per contact) is far below.
+        const double bound = 0.25 * 2 * material.stiffness_N_per_m * dt_s * dt_s;
+        double highest = 0, last = start_J;
+        bool falls = true;
+        for (int step = 0; step < 3000; ++step) {
+            marbles.step(float(dt_s));
+            const Summary now = summarize(marbles);
+            highest = std::max(highest, now.energy_J());
+            if (damping > 0 && now.energy_J() > last * (1 + bound)) falls = false;
+            last = now.energy_J();
+        }
+        CHECK(highest < start_J * (1 + bound));
+        if (damping > 0) {
+            CHECK(falls);
+            CHECK(last < 0.2 * start_J);
+        } else {
+            CHECK(last > start_J * (1 - bound));
+        }
+        MESSAGE("damping " << damping << ": energy " << last / start_J << " highest 1 + "
+                           << highest / start_J - 1 << " bound " << bound);
+    }
+}
+
+TEST_CASE("drag brings a falling marble to its last speed, in second order") {
+    // v' = g - lambda v: v = g / lambda (1 - exp(-lambda t)), in closed form.
+    const double lambda = 4, t = 0.5, exact = 9.81 / lambda * (1 - std::exp(-lambda * t));
+    double error[3];
+    for (int k = 0; k < 3; ++k) {
+        const int steps = 20 << k;
+        MaterialOf<double> material{0.01, 1, 1000, 0, 0, 0, 0, lambda, {0, -9.81, 0}};
+        MarblesCpu one{material, glm::dvec3(-100), glm::dvec3(100), {glm::dvec3(0)}, {glm::dvec3(0)}};
+        forces_cpu(one, one.velocity);
+        Marbles marbles(in_float(material), in_box(one.low_m / 10.0, one.high_m / 10.0),
+                        {make_float4(0, 0, 0, 0)}, {make_float4(0, 0, 0, 0)});
+        for (int step = 0; step < steps; ++step) {
+            step_cpu(one, t / steps);
+            marbles.step(float(t / steps));
+        }
+        error[k] = std::abs(-one.velocity[0].y - exact);
+        // Some 80 roundings of 1.2e-7 x 2 m/s.
+        CHECK(std::abs(marbles.velocities().download()[0].y - one.velocity[0].y) < 5e-6);
+    }
+    CHECK(error[0] / error[1] == doctest::Approx(4).epsilon(0.02));
+    CHECK(error[1] / error[2] == doctest::Approx(4).epsilon(0.02));
+}
