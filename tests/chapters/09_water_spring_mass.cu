@@ -1,14 +1,19 @@
 // Chapter 09: marbles against LAMMPS, closed forms of a bounce, stacks, chains, energy and limits of the
 // step.
+#include <unistd.h>
+
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <random>
-#include <sstream>
 
 #include "09_water_spring_mass/lammps.h"
 #include "09_water_spring_mass/marbles_cpu.h"
+#include "09_water_spring_mass/marbles_view.cuh"
 #include "09_water_spring_mass/run.cuh"
 #include "09_water_spring_mass/studies.cuh"
+#include "common/gl_context.h"
 #ifdef __CUDASIM__
 #include "common/cudasim/cudasim.h"
 #endif
@@ -202,24 +207,25 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Two marbles of mass 1 that meet head on with relative speed 1; omega = sqrt(k / m_eff) = 1.
+/// Two marbles of mass 1 and diameter 1000 that meet head on with relative speed 1; omega = sqrt(k / m_eff)
+/// = 1.
 struct Bounce {
     double restitution, time, deepest;  // time in contact and largest overlap, in units of 1 / omega
 };
 Bounce bounce(double zeta, double dt_s, double phase = 0.5) {
-    MaterialOf<double> material{1, 1, 0.5, 2 * zeta, 0, 0, 0, 0, {0, 0, 0}};
+    MaterialOf<double> material{1000, 1, 0.5, 2 * zeta, 0, 0, 0, 0, {0, 0, 0}};
     const double gap = phase * dt_s;  // they touch that long after the start
     MarblesCpu two{material,
-                   glm::dvec3(-100),
-                   glm::dvec3(100),
-                   {{-0.5 - gap / 2, 0, 0}, {0.5 + gap / 2, 0, 0}},
+                   glm::dvec3(-1e5),
+                   glm::dvec3(1e5),
+                   {{-500 - gap / 2, 0, 0}, {500 + gap / 2, 0, 0}},
                    {{0.5, 0, 0}, {-0.5, 0, 0}}};
     forces_cpu(two, two.velocity);
     Bounce result{0, 0, 0};
     double before = -gap;
     for (int step = 1; step * dt_s < 100; ++step) {
         step_cpu(two, dt_s);
-        const double overlap = 1 - (two.position[1].x - two.position[0].x);
+        const double overlap = 1000 - (two.position[1].x - two.position[0].x);
         result.deepest = std::max(result.deepest, overlap);
         if (result.deepest > 0 && overlap <= 0) {  // apart again; the moment between the steps, linearly
             result.time = (step - overlap / (overlap - before)) * dt_s - gap;
@@ -270,8 +276,8 @@ TEST_CASE("without damping the error of a bounce is the tabulated one, of third 
         double worst = 0;
         for (int k = 0; k < 10; ++k)
             worst = std::max(worst, std::abs(bounce(0, kPi / row.n, (k + 0.5) / 10).restitution - 1));
-        MESSAGE(row.n << " " << worst / row.error);
-        CHECK(std::abs(worst / row.error - 1) < 0.1);
+        // The same ten phases, so the same number; places up to 500 in double leave 1e-13 of it.
+        CHECK(std::abs(worst - row.error) < 1e-11);
     }
 }
 
@@ -307,8 +313,6 @@ TEST_CASE("a stack stands pressed by its weight, in double and in the kernels") 
             // stops moving when a step is less than half of that, here up to ten of them from its place.
             CHECK(std::abs(in_kernels - exact) < 1.5e-7);
         }
-        MESSAGE("top of " << n << ": kernels off by " << (2 * n - 1) * r - total - double(x[n - 1].y)
-                          << " m");
     }
 }
 
@@ -498,8 +502,6 @@ TEST_CASE("without damping energy stays within the bound of the step, with it it
         } else {
             CHECK(last > start_J * (1 - bound));
         }
-        MESSAGE("damping " << damping << ": energy " << last / start_J << " highest 1 + "
-                           << highest / start_J - 1 << " bound " << bound);
     }
 }
 
@@ -524,4 +526,265 @@ TEST_CASE("drag brings a falling marble to its last speed, in second order") {
     }
     CHECK(error[0] / error[1] == doctest::Approx(4).epsilon(0.02));
     CHECK(error[1] / error[2] == doctest::Approx(4).epsilon(0.02));
+}
+
+// ------------------------------------------------------------------------------------ limits of the step
+
+namespace {
+
+/// Marbles at rest at a distance where push and pull are equal, so that a packing holds together with no
+/// walls and no load: a lattice of springs k + a.
+struct Lattice {
+    MaterialOf<double> material{1.02, 1, 100, 0, 0, 1e6, 2, 0, {0, 0, 0}};  // k d = (k + a) 1
+    std::vector<glm::dvec3> position;
+};
+
+Lattice packed(Packing packing) {
+    Lattice lattice;
+    const auto add = [&](double x, double y, double z) { lattice.position.push_back({x, y, z}); };
+    const double s = std::sqrt(0.5);
+    switch (packing) {
+        case Packing::pair:
+            for (int i = 0; i < 2; ++i) add(i, 0, 0);
+            break;
+        case Packing::chain:
+            for (int i = 0; i < 60; ++i) add(i, 0, 0);
+            break;
+        case Packing::cubic:
+            for (int i = 0; i < 14 * 14 * 14; ++i) add(i % 14, i / 14 % 14, i / 196);
+            break;
+        case Packing::fcc:
+            for (int i = 0; i < 18 * 18 * 18; ++i)
+                if ((i % 18 + i / 18 % 18 + i / 324) % 2 == 0)
+                    add(s * (i % 18), s * (i / 18 % 18), s * (i / 324));
+            break;
+    }
+    return lattice;
+}
+
+/// Highest frequency of such a heap, by power iteration on its springs: nothing of the kernels, nothing of
+/// the table of waves. Springs along the contacts only; k + a = 102, m = 1.
+double highest_frequency(const Lattice& lattice) {
+    const auto& x = lattice.position;
+    std::vector<std::pair<int, int>> contacts;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = i + 1; j < x.size(); ++j)
+            if (glm::length(x[i] - x[j]) < 1.01) contacts.push_back({int(i), int(j)});
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    std::vector<glm::dvec3> u(x.size());
+    for (auto& p : u) p = {normal(random), normal(random), normal(random)};
+    double omega_squared = 0;
+    for (int k = 0; k < 400; ++k) {
+        std::vector<glm::dvec3> f(x.size(), glm::dvec3(0));
+        for (const auto& [i, j] : contacts) {
+            const glm::dvec3 n = x[i] - x[j];
+            const glm::dvec3 push = 102 * glm::dot(u[i] - u[j], n) * n;
+            f[i] += push;
+            f[j] -= push;
+        }
+        double uu = 0, uf = 0, ff = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            uu += glm::dot(u[i], u[i]);
+            uf += glm::dot(u[i], f[i]);
+            ff += glm::dot(f[i], f[i]);
+        }
+        omega_squared = uf / uu;
+        for (std::size_t i = 0; i < x.size(); ++i) u[i] = f[i] / std::sqrt(ff);
+    }
+    return std::sqrt(omega_squared);
+}
+
+/// A small shake, then steps of the kernels: does it stay small?
+bool stays_small(const Lattice& lattice, double dt_s, int steps) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> shake(-1e-4, 1e-4);
+    std::vector<glm::dvec3> position = lattice.position;
+    for (auto& p : position) p += glm::dvec3(shake(random), shake(random), shake(random));
+    const std::vector<glm::dvec3> still(position.size(), glm::dvec3(0));
+    Marbles marbles(in_float(lattice.material), in_box(glm::dvec3(-30), glm::dvec3(90)), in_float4(position),
+                    in_float4(still));
+    for (int step = 0; step < steps; ++step) marbles.step(float(dt_s));
+    // 30 times the shake: near its limit leapfrog swings 1 / sqrt(1 - 0.99^2) = 7 times as far.
+    return distance(in_double(by_id(marbles, marbles.positions())), lattice.position) < 3e-3;
+}
+
+}  // namespace
+
+TEST_CASE("the limit of the step is that of the packing: stable at 0.99 of it, not at 1.01") {
+    // Reference (3_contact packing_stability_limit): dt sqrt(k / m).
+    struct Row {
+        Packing packing;
+        double limit;
+    };
+    for (const Row& row : {Row{Packing::pair, 1.414213562373095}, Row{Packing::chain, 1.0},
+                           Row{Packing::cubic, 1.0}, Row{Packing::fcc, 0.7071067811865476}}) {
+        const Lattice lattice = packed(row.packing);
+        CHECK(time_step_limit_s(lattice.material, row.packing) * std::sqrt(102) ==
+              doctest::Approx(row.limit).epsilon(1e-12));
+        // The heap has a surface, where marbles are held by fewer: its limit is a little above.
+        const double own_limit_s = 2 / highest_frequency(lattice);
+        CHECK(own_limit_s * std::sqrt(102) >= row.limit * 0.9999);
+        CHECK(own_limit_s * std::sqrt(102) < row.limit * 1.01);
+        CHECK(stays_small(lattice, 0.99 * own_limit_s, 300));
+        CHECK_FALSE(stays_small(lattice, 1.01 * own_limit_s, 300));
+    }
+}
+
+TEST_CASE("dashpots shorten the step as the formula says, in the densest packing") {
+    for (const auto& [normal, tangential] :
+         {std::pair{10.0, 0.0}, std::pair{10.0, 5.0}, std::pair{0.0, 20.0}, std::pair{60.0, 30.0}}) {
+        Lattice lattice = packed(Packing::fcc);
+        lattice.material.normal_damping_per_s = normal;
+        lattice.material.tangential_damping_per_s = tangential;
+        const double limit_s = time_step_limit_s(lattice.material);
+        CHECK(limit_s < 0.98 * time_step_limit_s(packed(Packing::fcc).material));
+        CHECK(stays_small(lattice, 0.99 * limit_s, 300));
+        // The surface again: up to 1 % more for this heap (see above), and as much for its dashpots.
+        CHECK_FALSE(stays_small(lattice, 1.03 * limit_s, 600));
+    }
+}
+
+// ---------------------------------------------------------------------------------------- scenes and program
+
+TEST_CASE("a scene has exactly the marbles it was asked for, none touching, all inside the tank") {
+    for (const Scene& scene : all_scenes())
+        for (const std::uint32_t n : {1u, 7u, 1000u, 4097u}) {
+            Settings settings;
+            settings.scene = scene;
+            settings.particles = n;
+            const Start start = make_start(settings);
+            CHECK(start.marbles.size() == n);
+            const Summary now = Summarizer(n)(start.marbles);
+            CHECK(now.contacts == 0);
+            CHECK(now.elastic_J == 0);  // no wall is touched either
+            CHECK(start.dt_s == doctest::Approx(0.5 * time_step_limit_s(start.marbles.material())));
+        }
+}
+
+TEST_CASE("what --explain says is what happens: launches and bytes, with every combination of terms") {
+#ifndef __CUDASIM__
+    course::require_simulator();
+#else
+    for (int terms = 0; terms < 8; ++terms) {
+        Settings settings;
+        settings.scene = find_scene(all_scenes(), "dam_break");
+        settings.scene.touch.friction = terms & 1 ? 0.3f : 0;
+        settings.scene.touch.attraction = terms & 2 ? 0.01f : 0;
+        settings.scene.touch.drag_per_s = terms & 4 ? 1.0f : 0;
+        settings.particles = 3000;
+        settings.drawing = Drawing::none;
+        cudasim::Recording making;
+        Start start = make_start(settings);
+        // Lists come in groups of 32 marbles; one word tells that they are outdated.
+        const std::size_t rest = (NeighbourList::words_for(3000) - 3000 * NeighbourList::kCapacity + 1) * 4;
+        CHECK(making.bytes() == 3000 * Marbles::kBytesPerMarble + start.marbles.cell_bytes() + rest);
+        for (int step = 0; step < 20; ++step) {
+            const std::uint32_t lists = start.marbles.lists_made();
+            cudasim::Recording recording;
+            start.marbles.step(start.dt_s);
+            CHECK(recording.allocations() == 0);  // a step makes nothing
+            Launches expected = launches_per_step(start.marbles);
+            if (start.marbles.lists_made() > lists)
+                for (const auto& launch : launches_per_list(start.marbles)) expected.push_back(launch);
+            std::size_t total = 0;
+            for (const auto& [kernel, count] : expected) {
+                CHECK_MESSAGE(recording.count(kernel) == std::size_t(count), kernel);
+                CHECK(explain(settings, start).find(kernel) != std::string::npos);
+                total += std::size_t(count);
+            }
+            CHECK(recording.launches().size() == total);  // and no kernel that was not announced
+        }
+        const std::string text = explain(settings, start);
+        CHECK((text.find("left out: shear") != std::string::npos) == !(terms & 1));
+        CHECK((text.find("left out: attraction") != std::string::npos) == !(terms & 2));
+        CHECK((text.find("left out: drag") != std::string::npos) == !(terms & 4));
+    }
+#endif
+}
+
+TEST_CASE("marbles are drawn, and no OpenGL object is left behind") {
+    Settings settings;
+    settings.scene = all_scenes().front();
+    settings.particles = 500;
+    const Start start = make_start(settings);
+    std::unique_ptr<course::GlContext> context;
+    try {
+        context = course::make_headless_context();
+    } catch (const course::NoOpenGl& error) {
+        course::skip(error.what());
+    }
+    int made[2];
+    for (int k = 0; k < 2; ++k) {
+        settings.drawing = k == 0 ? Drawing::points : Drawing::spheres;
+        const int before = course::gl_count().made;
+        {
+            MarblesView view(settings, start, 160, 90);
+            view.draw(start.marbles, first_view(settings.scene.tank).camera());
+            const course::Image image = view.image();
+            int blue = 0;
+            for (std::size_t p = 0; p < image.rgb.size(); p += 3)
+                blue += image.rgb[p + 2] > image.rgb[p] + 60;
+            CHECK(blue > 160 * 90 / 100);
+        }
+        made[k] = course::gl_count().made - before;
+    }
+    CHECK(made[0] < made[1]);
+    CHECK(course::gl_count().live == 0);
+}
+
+namespace {
+
+/// Runs this chapter's program with its output folder in the build tree.
+course::ProgramRun run_program(const std::string& arguments, const std::string& environment = "") {
+    const std::string out = std::string(COURSE_BIN_DIR) + "/../test_output/09_" + std::to_string(getpid());
+    return course::run_program("ch09_water_spring_mass", "--out '" + out + "' " + arguments, environment);
+}
+
+std::string line_with(const std::string& text, const std::string& word) {
+    const std::size_t at = text.find(word);
+    return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+}  // namespace
+
+TEST_CASE("one seed gives the same bits, whatever the number of threads") {
+    const std::string arguments = "--particles 3000 --steps 400 --scene dam_break --draw none --seed 4";
+    const std::string first = line_with(run_program(arguments, "CUDASIM_THREADS=1").output, "State hash");
+    REQUIRE(!first.empty());
+    for (const char* environment : {"CUDASIM_THREADS=2", "CUDASIM_THREADS=7", "CUDASIM_ORDER=shuffled"})
+        CHECK(line_with(run_program(arguments, environment).output, "State hash") == first);
+    CHECK(line_with(run_program(arguments + "5").output, "State hash") != first);
+}
+
+TEST_CASE("a time step over the limit ends with exit 3 and says why") {
+    const course::ProgramRun run =
+        run_program("--particles 2000 --steps 2000 --scene dam_break --dt 0.003 --draw none");
+    CHECK(run.exit_code == 3);
+    for (const char* part : {"step ", "marble ", "m/s", "dt 0.003 s is over the limit 0.00"})
+        CHECK_MESSAGE(run.output.find(part) != std::string::npos, part << " in: " << run.output);
+}
+
+TEST_CASE("every scene runs to its end with the program's own step, and loses energy") {
+    for (const char* arguments : {"drop", "dam_break", "sticky", "syrup", "drop --restitution 1 --friction 0",
+                                  "dam_break --stiffness 0.1", "drop --restitution 0.01"}) {
+        const course::ProgramRun run =
+            run_program(std::string("--particles 1000 --steps 2500 --draw none --scene ") + arguments);
+        CHECK_MESSAGE(run.exit_code == 0, run.output);
+    }
+}
+
+TEST_CASE("bad input ends with exit 2 and one sentence") {
+    for (const char* arguments :
+         {"--particles 0",   "--particles -5",  "--particles many",  "--dt -1",
+          "--dt nan",        "--steps -1",      "--scene soup",      "--stiffness 0",
+          "--stiffness nan", "--restitution 0", "--restitution 1.1", "--friction -2",
+          "--friction inf",  "--attraction 2",  "--drag -3",         "--skin 11",
+          "--draw cubes",    "--unknown",       "--frames -1",       "--particles 2147483647"}) {
+        const course::ProgramRun run = run_program(arguments);
+        CHECK_MESSAGE(run.exit_code == 2, arguments << ": " << run.output);
+        CHECK_MESSAGE(run.output.rfind("error: ", 0) == 0, arguments << ": " << run.output);
+        CHECK_MESSAGE(std::count(run.output.begin(), run.output.end(), '\n') == 1,
+                      arguments << ": " << run.output);
+    }
 }
