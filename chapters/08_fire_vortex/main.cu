@@ -62,7 +62,7 @@ VortexScene make(const course::ProgramOptions& options, const Choices& choices, 
     }
     if (options.steps > 0) scene.fire.warm_up_steps = options.steps;
     check(m);
-    if (m.vortons == 0) fire::check(scene.fire);  // else the vortons' own watch speaks first
+    fire::check(scene.fire);
     return scene;
 }
 

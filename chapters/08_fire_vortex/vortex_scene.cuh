@@ -74,13 +74,12 @@ inline VortexScene campfire(std::uint32_t particles) {
     body.light = 1100.0f / float(flame.count);
 
     fire::ParticleKind& puff = f.fire.kind[1];
-    puff.emitter.centre_m.y = 0.6f;
-    puff.life_s = 1.6f;
+    puff.emitter.centre_m.y = 0.40f;
+    puff.life_s = 1.3f;
     fire::SpriteLook& smoke = f.looks[1];
-    smoke.colour = {0.20f, 0.18f, 0.17f};
-    smoke.radius_start_m = 0.06f, smoke.radius_end_m = 0.22f;
-    smoke.opacity = 40.0f / float(puff.count);
-    smoke.fade_in = 0.5f;
+    smoke.radius_start_m = 0.05f, smoke.radius_end_m = 0.15f;
+    smoke.opacity = 130.0f / float(puff.count);
+    smoke.fade_in = 0.25f;
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.04f;
@@ -97,7 +96,7 @@ inline VortexScene campfire(std::uint32_t particles) {
     flame.emitter.size_m = 0.18f;
     flame.emitter.roots = 9;
     flame.emitter.root_m = 0.06f;
-    f.view = {{0, 0.52f, 0}, 2.3f, 0.2f, 0.10f};
+    f.view = {{0, 0.60f, 0}, 2.6f, 0.2f, 0.10f};
     return scene;
 }
 //! [campfire]
@@ -135,14 +134,14 @@ inline VortexScene torch(std::uint32_t particles) {
 
     fire::SpriteLook smoke;
     smoke.blend = fire::Blend::alpha;
-    smoke.colour = {0.20f, 0.18f, 0.17f};
-    smoke.radius_start_m = 0.015f, smoke.radius_end_m = 0.06f;
-    smoke.fade_in = 0.6f, smoke.fade_out = 0.4f;
+    smoke.colour = fire::kSootAlbedo;
+    smoke.radius_start_m = 0.015f, smoke.radius_end_m = 0.05f;
+    smoke.fade_in = 0.3f, smoke.fade_out = 0.5f;
     fire::ParticleKind& puff = fire::add_kind(f, fire::share(particles, 0.05f), smoke);
     puff = carried_by_air(puff);
-    puff.emitter = {fire::Emitter::disc, {0, 0.18f, 0}, {0, 1, 0}, 0.02f};
+    puff.emitter = {fire::Emitter::disc, {0, 0.15f, 0}, {0, 1, 0}, 0.02f};
     puff.life_s = 0.7f;
-    f.looks[1].opacity = 25.0f / float(puff.count);
+    f.looks[1].opacity = 45.0f / float(puff.count);
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.0105f;
@@ -186,10 +185,10 @@ inline VortexScene wind(std::uint32_t particles) {
     f.fire.wind.gust = 0.35f;
     f.fire.wind.gust_s = 1.7f;
     fire::ParticleKind& flame = f.fire.kind[0];
-    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f};
+    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f, 9, 0.04f};
     scene.model.reach_m = 2.5f;
     stir(scene.model, flame.emitter, 4000, 0.6f, 13, 1.1f);
-    f.fire.kind[1].emitter.centre_m = {0.6f, 0.6f, 0};
+    f.fire.kind[1].emitter = {fire::Emitter::disc, {0.30f, 0.36f, 0}, {0, 1, 0}, 0.13f};
     f.view = {{0.4f, 0.45f, 0}, 2.6f, 0.2f, 0.12f};
     return scene;
 }

@@ -615,7 +615,7 @@ namespace {
 Stage dark() {
     Stage stage;
     stage.ground = false;
-    stage.ambient = glm::vec3(0);
+    stage.sky_low = stage.sky_high = glm::vec3(0);
     stage.glare = 0;
     return stage;
 }
