@@ -13,7 +13,7 @@ namespace vortex {
 struct VortexScene {
     fire::FireScene fire;
     VortexModel model;
-    Shading shading{0.25f, 2.2f, 16};
+    Shading shading{0.0f, 8.0f, 40};  ///< by vorticity
 };
 
 //! [stir]
@@ -154,7 +154,7 @@ inline VortexScene torch(std::uint32_t particles) {
     m.reach_m = 0.5f;
     // Hot gas comes from the whole head, flames from its top.
     stir(m, {fire::Emitter::disc, {0, 0, 0}, {0, 1, 0}, 0.040f}, 3000, 0.55f, 18, 0.65f);
-    scene.shading.full_vorticity_per_s = 45;
+    scene.shading = {0, 5, 115};
     f.view = {{0, 0.17f, 0}, 1.0f, 0.0f, 0.03f};
     return scene;
 }
@@ -167,7 +167,7 @@ inline VortexScene ball(std::uint32_t particles) {
     scene.model.ball = {{0, 0.45f, 0}, {0.25f, 0, 0}, 0.10f, 3.6f};
     // The last solid on the stage; VortexView takes it along.
     scene.fire.stage.rods.push_back({{0, 1, 0}, {0, 1.01f, 0}, scene.model.ball.radius_m, fire::Rod::wood});
-    scene.fire.fire.kind[1].emitter.centre_m.y = 0.8f;
+    scene.fire.fire.kind[1].emitter.centre_m.y = 0.58f;
     scene.fire.lights[1].position_m = {0.05f, 0.25f, 0.16f};  // not inside the ball
     return scene;
 }
@@ -188,7 +188,10 @@ inline VortexScene wind(std::uint32_t particles) {
     flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f, 9, 0.04f};
     scene.model.reach_m = 2.5f;
     stir(scene.model, flame.emitter, 4000, 0.6f, 13, 1.1f);
-    f.fire.kind[1].emitter = {fire::Emitter::disc, {0.30f, 0.36f, 0}, {0, 1, 0}, 0.13f};
+    f.fire.kind[1].emitter = {fire::Emitter::disc, {0.22f, 0.33f, 0}, {0, 1, 0}, 0.20f};
+    f.fire.kind[1].spread_m_per_s = 0.9f;
+    f.looks[1].radius_end_m = 0.24f;
+    f.looks[1].opacity *= 0.45f;
     f.view = {{0.4f, 0.45f, 0}, 2.6f, 0.2f, 0.12f};
     return scene;
 }

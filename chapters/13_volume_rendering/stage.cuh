@@ -18,7 +18,8 @@ struct SolidStage {
     glm::vec3 sky_low{0}, sky_high{0};  ///< radiance at the horizon and overhead
 };
 
-/// @param exposure of the film; chapter 07's stages are made for 1: a sky that gives as much less light looks alike
+/// @param exposure of the film; chapter 07's stages are made for 1: a sky that gives as much less light looks
+/// alike
 inline SolidStage make_solid(const fire::Stage& stage, float exposure) {
     SolidStage s;
     if (stage.rods.size() > fire::kMaxRods) throw course::BadInput("a stage has at most 10 rods");

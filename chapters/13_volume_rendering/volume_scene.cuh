@@ -132,7 +132,7 @@ inline VolumeScene torch(std::uint32_t particles) {
     scene.look.cell_m = 0.0042f;
     fire::Stage stick = fire::torch(100).stage;
     for (fire::Rod& rod : stick.rods) rod.embers *= 0.3f;
-    scene.look.film = {3.0f, 0.06f};
+    scene.look.film = {2.5f, 0.06f};
     scene.look.stage = make_solid(stick, scene.look.film.exposure);
     scene.look.albedo = 0.5f;
     scene.look.detail.reach_m = 0.020f;
@@ -165,7 +165,7 @@ inline VolumeScene vortex_campfire(std::uint32_t particles) {
     const float puffs = float(fire::share(particles, 0.2f)) / float(scene.fire.kind[1].count);
     for (int end = 0; end < 2; ++end) {
         cargos.cargo[0].soot_kg[end] *= 0.6f * flames;
-        cargos.cargo[0].heat_K_m3[end] *= 0.75f * flames;
+        cargos.cargo[0].heat_K_m3[end] *= 0.68f * flames;
         cargos.cargo[1].soot_kg[end] *= puffs;
     }
     for (int k = 2; k < cargos.count; ++k) cargos.cargo[k] = {};  // sparks carry nothing
