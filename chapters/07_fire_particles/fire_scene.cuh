@@ -47,6 +47,31 @@ inline std::uint32_t share(std::uint32_t particles, float part) {
     return count < 1 ? 1 : count;
 }
 
+/// Smoke: soot that covers what is behind it, and reflects next to nothing.
+/// @param opacity of all puffs together
+inline SpriteLook smoke_look(std::uint32_t puffs, float opacity, float radius_start_m, float radius_end_m) {
+    SpriteLook smoke;
+    smoke.blend = Blend::alpha;
+    smoke.radius_start_m = radius_start_m, smoke.radius_end_m = radius_end_m;
+    smoke.fade_in = 0.25f, smoke.fade_out = 0.6f;
+    smoke.wisps = 0.8f;
+    smoke.colour = kSootAlbedo;
+    smoke.opacity = opacity / float(puffs);
+    return smoke;
+}
+
+/// Sparks: small, hot, drawn out by their flight.
+inline SpriteLook spark_look(float radius_m, float stretch_s) {
+    SpriteLook spark;
+    spark.radius_start_m = radius_m, spark.radius_end_m = 0.7f * radius_m;
+    spark.stretch_s = stretch_s;
+    spark.fade_in = 0.02f, spark.fade_out = 0.3f;
+    spark.wisps = 0;
+    spark.temperature_start_K = 1650, spark.temperature_end_K = 1350;
+    spark.light = 40;
+    return spark;
+}
+
 //! [candle]
 /// A candle in still air: no turbulence at all. Its shape is the air that the plume draws in, and fuel that
 /// lives longer the nearer to the middle it was born.
@@ -136,15 +161,8 @@ inline FireScene torch(std::uint32_t particles) {
     flame.buoyancy_m_per_s2 = 9, flame.cooling_time_s = 0.4f;
 
     // What burns incompletely goes up as smoke, dark and thin.
-    SpriteLook smoke;
-    smoke.blend = Blend::alpha;
-    smoke.radius_start_m = 0.018f, smoke.radius_end_m = 0.065f;
-    smoke.fade_in = 0.3f, smoke.fade_out = 0.6f;
-    smoke.wisps = 0.8f;
-    smoke.colour = kSootAlbedo;
     const std::uint32_t puffs = share(particles, 0.065f);
-    smoke.opacity = 45.0f / float(puffs);
-    ParticleKind& plume = add_kind(scene, puffs, smoke);
+    ParticleKind& plume = add_kind(scene, puffs, smoke_look(puffs, 45, 0.018f, 0.065f));
     plume.emitter = {Emitter::disc, {-0.04f, 0.12f, 0}, {0, 1, 0}, 0.022f};
     plume.velocity_m_per_s = {-0.1f, 0.8f, 0};
     plume.spread_m_per_s = 0.12f;
@@ -152,14 +170,7 @@ inline FireScene torch(std::uint32_t particles) {
     plume.drag_time_s = 0.06f;
     plume.buoyancy_m_per_s2 = 3, plume.cooling_time_s = 0.6f;
 
-    SpriteLook spark;
-    spark.radius_start_m = 0.0010f, spark.radius_end_m = 0.0007f;
-    spark.stretch_s = 0.012f;
-    spark.fade_in = 0.02f, spark.fade_out = 0.3f;
-    spark.wisps = 0;
-    spark.temperature_start_K = 1650, spark.temperature_end_K = 1350;
-    spark.light = 40;
-    ParticleKind& ember = add_kind(scene, share(particles, 0.004f), spark);
+    ParticleKind& ember = add_kind(scene, share(particles, 0.004f), spark_look(0.0010f, 0.012f));
     ember.emitter = {Emitter::disc, {0, -0.05f, 0}, {0, 1, 0}, 0.035f};
     ember.velocity_m_per_s = {0, 0.9f, 0};
     ember.spread_m_per_s = 0.5f;
@@ -206,15 +217,8 @@ inline FireScene campfire(std::uint32_t particles) {
     flame.drag_time_s = 0.08f;
     flame.buoyancy_m_per_s2 = 9, flame.cooling_time_s = 0.6f;
 
-    SpriteLook smoke;
-    smoke.blend = Blend::alpha;
-    smoke.radius_start_m = 0.05f, smoke.radius_end_m = 0.17f;
-    smoke.fade_in = 0.2f, smoke.fade_out = 0.6f;
-    smoke.wisps = 0.8f;
-    smoke.colour = kSootAlbedo;
     const std::uint32_t puffs = share(particles, 0.14f);
-    smoke.opacity = 110.0f / float(puffs);
-    ParticleKind& plume = add_kind(scene, puffs, smoke);
+    ParticleKind& plume = add_kind(scene, puffs, smoke_look(puffs, 110, 0.05f, 0.17f));
     plume.emitter = {Emitter::disc, {0, 0.40f, 0}, {0, 1, 0}, 0.09f};
     plume.velocity_m_per_s = {0, 1.2f, 0};
     plume.spread_m_per_s = 0.3f;
@@ -222,14 +226,7 @@ inline FireScene campfire(std::uint32_t particles) {
     plume.drag_time_s = 0.08f;
     plume.buoyancy_m_per_s2 = 5, plume.cooling_time_s = 1.0f;
 
-    SpriteLook spark;
-    spark.radius_start_m = 0.0028f, spark.radius_end_m = 0.002f;
-    spark.stretch_s = 0.016f;
-    spark.fade_in = 0.02f, spark.fade_out = 0.3f;
-    spark.wisps = 0;
-    spark.temperature_start_K = 1650, spark.temperature_end_K = 1350;
-    spark.light = 40.0f;
-    ParticleKind& ember = add_kind(scene, share(particles, 0.01f), spark);
+    ParticleKind& ember = add_kind(scene, share(particles, 0.01f), spark_look(0.0028f, 0.016f));
     ember.emitter = {Emitter::disc, {0, 0.12f, 0}, {0, 1, 0}, 0.18f};
     ember.velocity_m_per_s = {0, 1.8f, 0};
     ember.spread_m_per_s = 0.9f;
@@ -334,12 +331,17 @@ inline std::string explain(const FireScene& scene, bool draws) {
     return text + "\n";
 }
 
+/// Ages are floats: one of a second does not grow by less than 6e-8 s. With this step it does, within 6 %.
+constexpr float kShortestStep_s = 1e-6f;
+
 //! [check]
 /// @throws course::BadInput if a life could end in the step in which it begins, or a number makes no sense
 inline void check(const Fire& fire, const std::string& name, float dt_s) {
     const auto want = [&](bool good, const std::string& sentence) {
         if (!good) throw course::BadInput("the " + name + ": " + sentence);
     };
+    want(dt_s >= kShortestStep_s,
+         "the time step must be at least 0.000001 s: with less, ages would not grow");
     for (int k = 0; k < fire.kind_count; ++k) {
         const ParticleKind& kind = fire.kind[k];
         const auto part = [](float x) { return x >= 0 && x < 1; };  // false for NaN, too

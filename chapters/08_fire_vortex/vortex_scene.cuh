@@ -76,10 +76,7 @@ inline VortexScene campfire(std::uint32_t particles) {
     fire::ParticleKind& puff = f.fire.kind[1];
     puff.emitter.centre_m.y = 0.40f;
     puff.life_s = 1.3f;
-    fire::SpriteLook& smoke = f.looks[1];
-    smoke.radius_start_m = 0.05f, smoke.radius_end_m = 0.15f;
-    smoke.opacity = 130.0f / float(puff.count);
-    smoke.fade_in = 0.25f;
+    f.looks[1] = fire::smoke_look(puff.count, 130, 0.05f, 0.15f);
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.04f;
@@ -132,16 +129,11 @@ inline VortexScene torch(std::uint32_t particles) {
     body.softness_m = 0.01f;
     body.light = 520.0f / float(flame.count);
 
-    fire::SpriteLook smoke;
-    smoke.blend = fire::Blend::alpha;
-    smoke.colour = fire::kSootAlbedo;
-    smoke.radius_start_m = 0.015f, smoke.radius_end_m = 0.05f;
-    smoke.fade_in = 0.3f, smoke.fade_out = 0.5f;
-    fire::ParticleKind& puff = fire::add_kind(f, fire::share(particles, 0.05f), smoke);
+    const std::uint32_t puffs = fire::share(particles, 0.05f);
+    fire::ParticleKind& puff = fire::add_kind(f, puffs, fire::smoke_look(puffs, 45, 0.015f, 0.05f));
     puff = carried_by_air(puff);
     puff.emitter = {fire::Emitter::disc, {0, 0.15f, 0}, {0, 1, 0}, 0.02f};
     puff.life_s = 0.7f;
-    f.looks[1].opacity = 45.0f / float(puff.count);
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.0105f;
