@@ -37,9 +37,11 @@ inline ParticleKind& add_kind(FireScene& scene, std::uint32_t count, const Sprit
     return kind;
 }
 
+//! [soot]
 /// What soot scatters of the light that meets it; it absorbs the rest. Single particles scatter more, but
 /// what is deep in a plume lies in the others' shadow, which nobody computes here: chapter 13 does.
 const glm::vec3 kSootAlbedo{0.010f, 0.011f, 0.012f};
+//! [soot]
 
 /// A share of the particles; at least one.
 inline std::uint32_t share(std::uint32_t particles, float part) {
