@@ -20,7 +20,7 @@ void main() {
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int k = -8; k <= 8; ++k) {
-        float weight = exp(-0.5 * float(k * k) / 16.0);
+        float weight = exp(-float(k * k) / 16.0);  // 0.02 at the last sample: no edge
         sum += weight * texture(source, uv + float(k) * step_uv);
         weights += weight;
     }

@@ -26,24 +26,35 @@ float depth_at(ivec2 pixel) {
 }
 
 //! [film]
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 light = light_at(pixel), around = vec3(0.0);
-    // One ray a pixel leaves steps in the outlines of what is solid: there a pixel shares with its neighbours.
-    float here = depth_at(pixel), jump = 0.0;
-    for (int k = 0; k < 4; ++k) {
-        ivec2 other = pixel + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
-        around += 0.25 * light_at(other);
-        jump = max(jump, abs(depth_at(other) - here) / here);
-    }
-    light = mix(light, around, 0.6 * smoothstep(0.03, 0.06, jump));
-    if (glare > 0.0) light = mix(light, texture(glare_map, gl_FragCoord.xy / picture_px).rgb, glare);
-    // The filters over a film's three colours overlap: each sees a little of what belongs to the others. That is why a
-    // flame's core is cream on a photograph, not lemon.
+// What the film shows of the light in a pixel.
+vec3 exposed_at(ivec2 pixel, vec3 scattered) {
+    vec3 light = mix(light_at(pixel), scattered, glare);
+    // The filters over a film's three colours overlap: each sees a little of what belongs to the others. That
+    // is why a flame's core is cream on a photograph, not lemon.
     light = mix(light, vec3(dot(light, vec3(0.2126, 0.7152, 0.0722))), 0.03);
     // Film runs out of grains: each colour comes near 1 and never reaches it. Red is first, then green; so
     // the deep orange of a black body turns yellow where flames overlap, as on a photograph.
-    vec3 exposed = 1.0 - exp(-exposure * light);
+    return 1.0 - exp(-exposure * light);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 scattered = glare > 0.0 ? texture(glare_map, gl_FragCoord.xy / picture_px).rgb : vec3(0.0);
+    vec3 exposed = exposed_at(pixel, scattered);
+    // One ray a pixel leaves steps in the outlines of what is solid. There a pixel shares with its neighbours:
+    // what the film shows of them, since in linear light a flame would outshine any log it shares a pixel with.
+    float here = depth_at(pixel), jump = 0.0;
+    for (int k = 0; k < 9; ++k)
+        jump = max(jump, abs(depth_at(pixel + ivec2(k % 3, k / 3) - 1) - here) / here);
+    if (jump > 0.03) {
+        exposed *= 0.25;
+        for (int k = 0; k < 4; ++k) {  // the corners weigh half as much as the sides
+            int side = k % 2 == 0 ? 1 : -1;
+            ivec2 beside = k < 2 ? ivec2(side, 0) : ivec2(0, side);
+            ivec2 corner = ivec2(side, k < 2 ? 1 : -1);
+            exposed += exposed_at(pixel + beside, scattered) / 8.0 + exposed_at(pixel + corner, scattered) / 16.0;
+        }
+    }
     // Half a step of noise before rounding to 8 bits: the dark keeps its shades without bands.
     vec3 noise = vec3(grain(gl_FragCoord.xy) - 0.5) / 255.0;
     result = vec4(exposed + noise * 2.0 * sqrt(exposed + 0.0001), 1.0);

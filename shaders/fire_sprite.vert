@@ -18,7 +18,7 @@ uniform float opacity;
 uniform int additive;
 uniform sampler2D ramp;  // black body: colour of luminance 1, logarithm of the luminance
 
-uniform vec3 ambient;
+uniform vec3 sky_high;
 uniform int light_count;
 uniform vec4 light_at[4];  // position, size
 uniform vec3 light_colour[4];
@@ -40,7 +40,7 @@ vec3 glow(float kelvin) {
 
 // Smoke reflects the fire's light to all sides.
 vec3 light_on_smoke(vec3 x) {
-    vec3 sum = ambient;
+    vec3 sum = sky_high;
     for (int k = 0; k < light_count; ++k) {
         vec3 to_light = light_at[k].xyz - x;
         sum += light_colour[k] / (dot(to_light, to_light) + light_at[k].w * light_at[k].w);

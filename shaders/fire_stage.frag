@@ -8,7 +8,8 @@ uniform vec2 picture_px;
 uniform int ground;
 uniform vec3 ground_colour;
 uniform float ground_grain_m;
-uniform vec3 ambient;
+uniform vec3 sky_low;   // light of the sky at the horizon...
+uniform vec3 sky_high;  // ...and overhead
 uniform int light_count;
 uniform vec4 light_at[4];  // position, size
 uniform vec3 light_colour[4];
@@ -68,7 +69,7 @@ float lit(vec3 x, vec3 to, int except) {
 
 // Light on a surface at x that faces `normal`; `soft` is the part that comes around the edge.
 vec3 light_on(vec3 x, vec3 normal, float soft, int except) {
-    vec3 sum = ambient;
+    vec3 sum = sky_high * (0.5 + 0.5 * normal.y);
     for (int k = 0; k < light_count; ++k) {
         vec3 to_light = light_at[k].xyz - x;
         float size = light_at[k].w, d2 = dot(to_light, to_light) + size * size;
@@ -100,20 +101,27 @@ vec3 rod_light(int k, vec3 x) {
     float radius = rod_from[k].w;
     if (rod_material[k] == 2)  // a wick: black, with a glowing tip
         return vec3(0.010, 0.008, 0.007) * light_on(x, normal, 0.2, k) +
-               rod_to[k].w * vec3(1.3, 0.20, 0.015) * smoothstep(0.55, 1.0, along);
+               rod_to[k].w * vec3(1.3, 0.20, 0.015) * smoothstep(0.86, 1.0, along);
     if (rod_material[k] == 1) {  // wax: light enters it and comes out elsewhere
         bool top = along > 0.9999;
-        if (top) {  // molten, darker towards the wick, with a raised rim
+        float molten = 0.0;
+        if (top) {  // a clear pool around the wick, and a raised rim
             vec3 off = x - rod_to[k].xyz;
-            float rim = smoothstep(0.7, 1.0, length(off) / radius);
-            normal = normalize(vec3(0, 1, 0) - 0.6 * rim * off / radius);
+            float rim = smoothstep(0.74, 1.0, length(off) / radius);
+            normal = normalize(vec3(0, 1, 0) - 0.8 * rim * off / radius);
+            molten = 1.0 - smoothstep(0.66, 0.76, length(off) / radius);
         }
-        vec3 sum = vec3(0.80, 0.70, 0.56) * light_on(x, normal, 0.3, k);
+        vec3 sum = mix(vec3(0.80, 0.70, 0.56), vec3(0.42, 0.30, 0.18), molten) * light_on(x, normal, 0.3, k);
+        vec3 mirrored = reflect(normalize(x - camera_to_world[3].xyz), vec3(0, 1, 0));
         for (int l = 0; l < light_count; ++l) {
             vec3 to_light = light_at[l].xyz - vec3(x.x, rod_to[k].y, x.z);
             float depth = top ? 0.0 : rod_to[k].y - x.y;
-            sum += light_colour[l] / dot(to_light, to_light) *
+            float through = 1.0 - 0.5 * molten;
+            sum += through * light_colour[l] / dot(to_light, to_light) *
                    vec3(0.40, 0.25, 0.12) * exp(-depth * vec3(0.55, 0.68, 0.85) / radius);
+            // The pool mirrors the flame a little.
+            float meets = max(dot(mirrored, normalize(to_light)), 0.0);
+            sum += 0.5 * molten * pow(meets, 12.0) * light_colour[l] / dot(to_light, to_light);
         }
         return sum;
     }
@@ -167,10 +175,10 @@ void main() {
             rod = k;
         }
     }
-    vec3 x = eye + distance_m * ray, night = 0.6 * ambient * (1.0 + max(ray.y, 0.0));
-    vec3 light = night;
+    vec3 x = eye + distance_m * ray;
+    vec3 light = mix(sky_high, sky_low, exp(-3.0 * max(ray.y, 0.0)));
     if (rod >= 0) light = rod_light(rod, x);
-    if (rod == -1) light = mix(night, ground_light(x), exp(-0.04 * distance_m));
+    if (rod == -1) light = mix(sky_low, ground_light(x), exp(-0.06 * distance_m));  // the evening's haze
     result = vec4(light, 1.0);
     float depth_m = distance_m / slant;
     float clip_z = (-projection[2][2] * depth_m + projection[3][2]) / depth_m;

@@ -57,9 +57,11 @@ struct Stage {
     std::vector<Rod> rods;
     bool ground = true;
     glm::vec3 ground_colour{0.20f, 0.16f, 0.13f};
-    float ground_grain_m = 0.05f;                  ///< size of its lumps; 0: a table top
-    glm::vec3 ambient{0.0012f, 0.0018f, 0.0032f};  ///< the night's own light
-    float exposure = 1;                            ///< light that the film gets; doubling it is one stop
+    float ground_grain_m = 0.05f;  ///< size of its lumps; 0: a table top
+    /// The evening sky's light at the horizon and overhead. It is what dark smoke is seen against, and it
+    /// lights, faintly, what the fire does not.
+    glm::vec3 sky_low{0.026f, 0.029f, 0.038f}, sky_high{0.009f, 0.0115f, 0.017f};
+    float exposure = 1;   ///< light that the film gets; doubling it is one stop
     float glare = 0.05f;  ///< part of the light that the lens scatters over the picture
 };
 

@@ -54,7 +54,7 @@ class FireRenderer {
     /// The sprites alone in linear light, RGBA with the colours premultiplied, bottom row first.
     std::vector<glm::vec4> light() const;
 
-    Stage stage;  ///< exposure, glare and ambient may change between pictures
+    Stage stage;  ///< exposure, glare and sky may change between pictures
 
   private:
     using Program = course::ShaderProgram;
@@ -138,7 +138,8 @@ inline void FireRenderer::begin(const course::Camera& camera, const std::vector<
     p.set("ground", stage.ground ? 1 : 0);
     p.set("ground_colour", stage.ground_colour);
     p.set("ground_grain_m", stage.ground_grain_m);
-    p.set("ambient", stage.ambient);
+    p.set("sky_low", stage.sky_low);
+    p.set("sky_high", stage.sky_high);
     p.set("rod_count", int(stage.rods.size()));
     for (std::size_t k = 0; k < stage.rods.size(); ++k) {
         const Rod& rod = stage.rods[k];
@@ -176,7 +177,7 @@ inline void FireRenderer::draw(const SpriteRange& sprites, const SpriteLook& loo
     p.use();
     set_camera(p);
     set_lights(p);
-    p.set("ambient", stage.ambient);
+    p.set("sky_high", stage.sky_high);
     p.set("radius_m", glm::vec2(look.radius_start_m, look.radius_end_m));
     p.set("temperature_K", glm::vec2(look.temperature_start_K, look.temperature_end_K));
     p.set("ramp_K", glm::vec2(kRampLow_K, kRampHigh_K));
@@ -210,7 +211,7 @@ inline void FireRenderer::finish() {
         const course::Framebuffer &a = (*glare_)[0], &b = (*glare_)[1];
         blur(light_, a, glm::vec2(0));  // shrink
         // Wider each time: together they fall off like a lens's glare, bright near and faint far.
-        for (const float width : {1.0f, 3.0f}) {
+        for (const float width : {1.0f, 2.0f, 4.0f}) {
             blur(a, b, glm::vec2(width / float(a.width()), 0));
             blur(b, a, glm::vec2(0, width / float(a.height())));
         }

@@ -181,8 +181,7 @@ inline void study_sorting(course::Study& study) {
     for (const std::uint32_t particles : counts) {
         FireScene scene = make_scene("campfire", particles, 1);
         const ParticleKind puffs = scene.fire.kind[1];
-        SpriteLook look = scene.looks[1];
-        look.opacity *= 6;  // thick smoke: what is in front matters
+        const SpriteLook look = scene.looks[1];
         scene.stage.rods.clear();
         scene.stage.ground = false;
         scene.fire.kind_count = 0;

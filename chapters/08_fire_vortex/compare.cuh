@@ -20,6 +20,10 @@ double seconds_per_step(int steps, Step&& step) {
            std::max(1, steps);
 }
 
+constexpr float kSlice_m = 0.03f;  ///< half the thickness of a slice through the flames
+/// What is red on the maps of what vortons know.
+constexpr float kMapVorticity_per_s = 20, kMapSpeed_m_per_s = 2.5f;
+
 /// What the comparison found.
 struct TwoFires {
     course::Image side_by_side, shading;
@@ -27,6 +31,28 @@ struct TwoFires {
                         {"model", "particles", "ms per step", "steps per s of fire", "s per s of fire",
                          "kernels a step", "bytes a particle", "bytes besides"}};
 };
+
+/// One slice through the flames four times: lit evenly, lit by vorticity, and what the vortons know there:
+/// vorticity, speed.
+inline course::Image what_vortons_know(SharedVortexFire& fire, int width_px, int height_px) {
+    const VortexScene& scene = fire.scene();
+    course::Camera near = fire::camera_of(scene.fire);
+    near.target_m.y = 0.42f;
+    near.eye_m = glm::mix(near.target_m, near.eye_m, 0.55f);
+    VortexView view(scene, std::max(1, width_px / 2), std::max(1, height_px / 2));
+    std::vector<course::Image> pictures;
+    Shading by_vorticity = scene.shading;
+    by_vorticity.slice_m = kSlice_m;
+    for (const Shading& shading : {Shading{1, 1, 1, kSlice_m}, by_vorticity}) {
+        view.draw(fire, near, shading);
+        pictures.push_back(view.image());
+    }
+    view.draw_map<Known::vorticity>(fire, near, kMapVorticity_per_s, kSlice_m);
+    pictures.push_back(view.image());
+    view.draw_map<Known::speed>(fire, near, kMapSpeed_m_per_s, kSlice_m);
+    pictures.push_back(view.image());
+    return course::contact_sheet(pictures, 2);
+}
 
 //! [compare]
 /// @param stirred   a vortex fire that burns
@@ -47,12 +73,10 @@ inline TwoFires compare_fires(SharedVortexFire& stirred, double stirred_s, std::
     plain_view.draw(plain, camera);
     VortexView stirred_view(scene, width_px / 2, height_px);
     stirred_view.draw(stirred, camera);
-    const course::Image shaded = stirred_view.image();
-    stirred_view.draw(stirred, camera, false);
 
     TwoFires result;
-    result.side_by_side = course::contact_sheet({plain_view.image(), shaded}, 2);
-    result.shading = course::contact_sheet({stirred_view.image(), shaded}, 2);
+    result.side_by_side = course::contact_sheet({plain_view.image(), stirred_view.image()}, 2);
+    result.shading = what_vortons_know(stirred, width_px, height_px);
     int kernels = 0;
     for (const auto& launch : launches_per_step(scene, stirred.vortons().flow().grid.size))
         kernels += launch.second;

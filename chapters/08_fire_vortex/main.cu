@@ -62,7 +62,7 @@ VortexScene make(const course::ProgramOptions& options, const Choices& choices, 
     }
     if (options.steps > 0) scene.fire.warm_up_steps = options.steps;
     check(m);
-    if (m.vortons == 0) fire::check(scene.fire);  // else the vortons' own watch speaks first
+    fire::check(scene.fire);
     return scene;
 }
 
@@ -81,8 +81,10 @@ void show_comparison(course::Program& program, SharedVortexFire& fire, double st
     course::save_png(options.out / "shading.png", two.shading);
     program.result().picture("two_fires.png",
                              "The same emitter: non-interacting (left), velocity-vortex (right)");
-    program.result().picture("shading.png",
-                             "The same flames, lit evenly (left) and by their vorticity (right)");
+    program.result().picture(
+        "shading.png",
+        "A slice through the flames, lit evenly and by their vorticity (above); and what "
+        "the vortons know there: vorticity and speed, from blue (little) to red (below)");
     program.result().table(two.table);
 }
 

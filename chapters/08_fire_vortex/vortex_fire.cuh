@@ -76,25 +76,35 @@ __global__ void vortex_flame_kernel(fire::FlameArrays a, std::uint32_t n, fire::
 //! [flames]
 
 //! [shade]
-/// How vorticity lights flames: from `calm` times their light where gas does not roll, to `rolling` times
-/// from `full_vorticity_per_s` on.
+/// What the vortex model knows at each place, and particles that know nothing of each other do not.
+enum class Known { vorticity, speed };
+
+/// How it lights flames: from `low` times their light where it is 0, to `high` times from `full` on.
 struct Shading {
-    float calm = 1, rolling = 1, full_vorticity_per_s = 1;
+    float low = 1, high = 1, full = 1;  ///< full: 1/s (vorticity) or m/s (speed)
+    float slice_m = 1e30f;              ///< flames farther from the plane z = 0 stay dark
 };
 
-/// What the model knows and a picture can use: one thread per particle, and only when a picture is drawn. A
-/// flame burns where fuel meets air, and that is where the gas rolls: the more vorticity, the brighter.
-inline __global__ void shade_kernel(float* gain, const float4* position, std::uint32_t n, Flow flow,
-                                    Shading shading) {
+/// One thread per particle, and only when a picture is drawn. A flame burns where fuel meets air, and that is
+/// where the gas rolls: the more vorticity, the brighter.
+template <Known kKnown>
+__global__ void shade_kernel(float* gain, const float4* position, std::uint32_t n, Flow flow,
+                             Shading shading) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
     const glm::vec3 x = xyz(position[i]);
-    const float4 dx = slope(flow.field, flow.grid, x, {1, 0, 0});
-    const float4 dy = slope(flow.field, flow.grid, x, {0, 1, 0});
-    const float4 dz = slope(flow.field, flow.grid, x, {0, 0, 1});
-    const glm::vec3 vorticity(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x);
-    const float t = fminf(1.0f, glm::length(vorticity) / shading.full_vorticity_per_s);
-    gain[i] = shading.calm + (shading.rolling - shading.calm) * t * t * (3 - 2 * t);
+    glm::vec3 known;
+    if constexpr (kKnown == Known::vorticity) {
+        const float4 dx = slope(flow.field, flow.grid, x, {1, 0, 0});
+        const float4 dy = slope(flow.field, flow.grid, x, {0, 1, 0});
+        const float4 dz = slope(flow.field, flow.grid, x, {0, 0, 1});
+        known = {dy.z - dz.y, dz.x - dx.z, dx.y - dy.x};
+    } else {
+        known = flow.at<false>(x);
+    }
+    const float t = fminf(1.0f, glm::length(known) / shading.full);
+    const float lit = shading.low + (shading.high - shading.low) * t * t * (3 - 2 * t);
+    gain[i] = std::abs(x.z) <= shading.slice_m ? lit : 0.0f;
 }
 //! [shade]
 
@@ -189,9 +199,11 @@ class VortexFire {
     }
 
     /// One number for each flame particle, for the renderer: see shade_kernel.
+    template <Known kKnown = Known::vorticity>
     void shade(float* gain, const float4* flame_position, const Shading& shading) const {
         if (n_ == 0) return;
-        shade_kernel<<<grid::blocks_for(n_, kThreads), kThreads>>>(gain, flame_position, n_, flow_, shading);
+        shade_kernel<kKnown>
+            <<<grid::blocks_for(n_, kThreads), kThreads>>>(gain, flame_position, n_, flow_, shading);
         CUDA_CHECK(cudaGetLastError());
     }
 

@@ -13,7 +13,7 @@ namespace vortex {
 struct VortexScene {
     fire::FireScene fire;
     VortexModel model;
-    Shading shading{0.25f, 2.2f, 16};
+    Shading shading{0.0f, 8.0f, 40};  ///< by vorticity
 };
 
 //! [stir]
@@ -74,13 +74,9 @@ inline VortexScene campfire(std::uint32_t particles) {
     body.light = 1100.0f / float(flame.count);
 
     fire::ParticleKind& puff = f.fire.kind[1];
-    puff.emitter.centre_m.y = 0.6f;
-    puff.life_s = 1.6f;
-    fire::SpriteLook& smoke = f.looks[1];
-    smoke.colour = {0.20f, 0.18f, 0.17f};
-    smoke.radius_start_m = 0.06f, smoke.radius_end_m = 0.22f;
-    smoke.opacity = 40.0f / float(puff.count);
-    smoke.fade_in = 0.5f;
+    puff.emitter.centre_m.y = 0.40f;
+    puff.life_s = 1.3f;
+    f.looks[1] = fire::smoke_look(puff.count, 130, 0.05f, 0.15f);
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.04f;
@@ -97,7 +93,7 @@ inline VortexScene campfire(std::uint32_t particles) {
     flame.emitter.size_m = 0.18f;
     flame.emitter.roots = 9;
     flame.emitter.root_m = 0.06f;
-    f.view = {{0, 0.52f, 0}, 2.3f, 0.2f, 0.10f};
+    f.view = {{0, 0.60f, 0}, 2.6f, 0.2f, 0.10f};
     return scene;
 }
 //! [campfire]
@@ -133,16 +129,11 @@ inline VortexScene torch(std::uint32_t particles) {
     body.softness_m = 0.01f;
     body.light = 520.0f / float(flame.count);
 
-    fire::SpriteLook smoke;
-    smoke.blend = fire::Blend::alpha;
-    smoke.colour = {0.20f, 0.18f, 0.17f};
-    smoke.radius_start_m = 0.015f, smoke.radius_end_m = 0.06f;
-    smoke.fade_in = 0.6f, smoke.fade_out = 0.4f;
-    fire::ParticleKind& puff = fire::add_kind(f, fire::share(particles, 0.05f), smoke);
+    const std::uint32_t puffs = fire::share(particles, 0.05f);
+    fire::ParticleKind& puff = fire::add_kind(f, puffs, fire::smoke_look(puffs, 45, 0.015f, 0.05f));
     puff = carried_by_air(puff);
-    puff.emitter = {fire::Emitter::disc, {0, 0.18f, 0}, {0, 1, 0}, 0.02f};
+    puff.emitter = {fire::Emitter::disc, {0, 0.15f, 0}, {0, 1, 0}, 0.02f};
     puff.life_s = 0.7f;
-    f.looks[1].opacity = 25.0f / float(puff.count);
 
     VortexModel& m = scene.model;
     m.physics.core_m = 0.0105f;
@@ -155,7 +146,7 @@ inline VortexScene torch(std::uint32_t particles) {
     m.reach_m = 0.5f;
     // Hot gas comes from the whole head, flames from its top.
     stir(m, {fire::Emitter::disc, {0, 0, 0}, {0, 1, 0}, 0.040f}, 3000, 0.55f, 18, 0.65f);
-    scene.shading.full_vorticity_per_s = 45;
+    scene.shading = {0, 5, 115};
     f.view = {{0, 0.17f, 0}, 1.0f, 0.0f, 0.03f};
     return scene;
 }
@@ -168,7 +159,7 @@ inline VortexScene ball(std::uint32_t particles) {
     scene.model.ball = {{0, 0.45f, 0}, {0.25f, 0, 0}, 0.10f, 3.6f};
     // The last solid on the stage; VortexView takes it along.
     scene.fire.stage.rods.push_back({{0, 1, 0}, {0, 1.01f, 0}, scene.model.ball.radius_m, fire::Rod::wood});
-    scene.fire.fire.kind[1].emitter.centre_m.y = 0.8f;
+    scene.fire.fire.kind[1].emitter.centre_m.y = 0.58f;
     scene.fire.lights[1].position_m = {0.05f, 0.25f, 0.16f};  // not inside the ball
     return scene;
 }
@@ -186,10 +177,13 @@ inline VortexScene wind(std::uint32_t particles) {
     f.fire.wind.gust = 0.35f;
     f.fire.wind.gust_s = 1.7f;
     fire::ParticleKind& flame = f.fire.kind[0];
-    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f};
+    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f, 9, 0.04f};
     scene.model.reach_m = 2.5f;
     stir(scene.model, flame.emitter, 4000, 0.6f, 13, 1.1f);
-    f.fire.kind[1].emitter.centre_m = {0.6f, 0.6f, 0};
+    f.fire.kind[1].emitter = {fire::Emitter::disc, {0.22f, 0.33f, 0}, {0, 1, 0}, 0.20f};
+    f.fire.kind[1].spread_m_per_s = 0.9f;
+    f.looks[1].radius_end_m = 0.24f;
+    f.looks[1].opacity *= 0.45f;
     f.view = {{0.4f, 0.45f, 0}, 2.6f, 0.2f, 0.12f};
     return scene;
 }

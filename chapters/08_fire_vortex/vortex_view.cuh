@@ -44,34 +44,66 @@ class VortexView {
 
     //! [draw]
     /// Smoke first, then what shines, as in chapter 07.
-    /// @param shaded  whether vorticity makes flames brighter: without it every particle has the same light
-    void draw(SharedVortexFire& fire, const course::Camera& camera, bool shaded = true) {
+    void draw(SharedVortexFire& fire, const course::Camera& camera) {
+        draw(fire, camera, fire.scene().shading);
+    }
+    void draw(SharedVortexFire& fire, const course::Camera& camera, const Shading& shading) {
         const VortexScene& scene = fire.scene();
         fire::FireRenderer& renderer = view_.renderer();
         if (fire.vortons().model().ball.radius_m > 0) place_ball(renderer, fire.vortons().flow().ball);
         renderer.begin(camera, fire::lights_at(scene.fire, fire.time_s()));
         view_.draw_kinds(fire.flames(), fire::Blend::alpha, camera);
-        if (shaded) {
-            const fire::FlameArrays flames = fire.flames().map();
-            fire.vortons().shade(gain_.map(), flames.position, scene.shading);
-            gain_.unmap();
-            fire.flames().unmap();
-        }
+        shade<Known::vorticity>(fire, shading);
         for (int k = 0; k < scene.fire.fire.kind_count; ++k) {
             const fire::ParticleKind& kind = scene.fire.fire.kind[k];
             if (scene.fire.looks[k].blend != fire::Blend::additive) continue;
             const bool burns = k == 0;  // sparks shine as they did
             renderer.draw({&fire.flames().position().gl_buffer(), &fire.flames().velocity().gl_buffer(),
-                           kind.first, kind.count, shaded && burns ? &gain_.gl_buffer() : nullptr},
+                           kind.first, kind.count, burns ? &gain_.gl_buffer() : nullptr},
                           scene.fire.looks[k]);
         }
         renderer.finish();
     }
     //! [draw]
+
+    //! [draw_map]
+    /// A slice through the flames as a map: blue where `kKnown` is 0, red from `full` on. Every flame is
+    /// drawn in both colours, with as much of each as its value says.
+    template <Known kKnown>
+    void draw_map(SharedVortexFire& fire, const course::Camera& camera, float full, float slice_m) {
+        const VortexScene& scene = fire.scene();
+        const fire::ParticleKind& flame = scene.fire.fire.kind[0];
+        fire::SpriteLook look = scene.fire.looks[0];
+        look.temperature_start_K = 0;  // no black body: the colour alone, however old the flame is
+        look.light *= 0.5f;
+        fire::FireRenderer& renderer = view_.renderer();
+        const fire::Stage stage = renderer.stage;
+        renderer.stage.sky_low = renderer.stage.sky_high = glm::vec3(0);  // a map wants no sky
+        renderer.begin(camera, {});
+        for (const bool high : {false, true}) {
+            shade<kKnown>(fire, {high ? 0.0f : 1.0f, high ? 1.0f : 0.0f, full, slice_m});
+            look.colour = high ? glm::vec3(1, 0.10f, 0) : glm::vec3(0, 0.10f, 1);
+            renderer.draw({&fire.flames().position().gl_buffer(), &fire.flames().velocity().gl_buffer(),
+                           flame.first, flame.count, &gain_.gl_buffer()},
+                          look);
+        }
+        renderer.finish();
+        renderer.stage = stage;
+    }
+    //! [draw_map]
+
     course::Image image() const { return view_.image(); }
     const course::Framebuffer& picture() const { return view_.picture(); }
 
   private:
+    template <Known kKnown>
+    void shade(SharedVortexFire& fire, const Shading& shading) {
+        const fire::FlameArrays flames = fire.flames().map();
+        fire.vortons().shade<kKnown>(gain_.map(), flames.position, shading);
+        gain_.unmap();
+        fire.flames().unmap();
+    }
+
     /// The stage's last solid is the ball: a rod that is as good as without length.
     static void place_ball(fire::FireRenderer& renderer, const Ball& ball) {
         fire::Rod& last = renderer.stage.rods.back();

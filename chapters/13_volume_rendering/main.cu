@@ -39,7 +39,7 @@ VolumeScene chosen_scene(const course::ProgramOptions& options, const Choices& c
     if (choices.no_shadows) scene.look.shadows = false;
     if (choices.no_skipping) scene.look.block_edge = 0;
     if (choices.no_detail) scene.look.detail.reach_m = 0;
-    if (!scene.stirred) fire::check(scene.fire, scene.name, scene.dt_s);  // vortons watch over their own step
+    fire::check(scene.fire, scene.name, scene.dt_s);
     return scene;
 }
 

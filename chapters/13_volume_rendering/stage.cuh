@@ -18,15 +18,17 @@ struct SolidStage {
     glm::vec3 sky_low{0}, sky_high{0};  ///< radiance at the horizon and overhead
 };
 
-inline SolidStage make_solid(const fire::Stage& stage, glm::vec3 sky_low, glm::vec3 sky_high) {
+/// @param exposure of the film; chapter 07's stages are made for 1: a sky that gives as much less light looks
+/// alike
+inline SolidStage make_solid(const fire::Stage& stage, float exposure) {
     SolidStage s;
     if (stage.rods.size() > fire::kMaxRods) throw course::BadInput("a stage has at most 10 rods");
     for (const fire::Rod& rod : stage.rods) s.rod[s.rod_count++] = rod;
     s.ground = stage.ground;
     s.ground_colour = stage.ground_colour;
     s.ground_grain_m = stage.ground_grain_m > 0 ? stage.ground_grain_m : 0.05f;
-    s.sky_low = sky_low;
-    s.sky_high = sky_high;
+    s.sky_low = stage.sky_low / exposure;
+    s.sky_high = stage.sky_high / exposure;
     return s;
 }
 

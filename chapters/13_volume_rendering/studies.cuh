@@ -52,6 +52,14 @@ struct StudyFire {
         fire.draw(seen.data(), lens);
         return seen.download();
     }
+    /// Filling the grid is part of the price.
+    course::Timing time_picture(FireVolume& volume) {
+        return course::time_work(3, [&] {
+            fill(volume);
+            volume.draw(seen.data(), lens);
+            CUDA_CHECK(cudaDeviceSynchronize());
+        });
+    }
     course::Timing time_draw(const FireVolume& fire, int repeats) {
         return course::time_work(repeats, [&] {
             fire.draw(seen.data(), lens);
@@ -114,11 +122,7 @@ inline void study_grid_resolution(course::Study& study) {
         look.cell_m = cell_m;
         look.step_in_cells = step_in_cells;
         FireVolume volume(look);
-        const course::Timing time = course::time_work(3, [&] {  // filling the grid is part of the price
-            fire.fill(volume);
-            volume.draw(fire.seen.data(), fire.lens);
-            CUDA_CHECK(cudaDeviceSynchronize());
-        });
+        const course::Timing time = fire.time_picture(volume);
         light = fire.seen.download();
         return time;
     };
@@ -200,11 +204,7 @@ inline void study_sprites(course::Study& study) {
         }
         for (const float step : steps) {
             volume.look().step_in_cells = step;
-            const course::Timing time = course::time_work(3, [&] {
-                fire.fill(volume);
-                volume.draw(fire.seen.data(), fire.lens);
-                CUDA_CHECK(cudaDeviceSynchronize());
-            });
+            const course::Timing time = fire.time_picture(volume);
             study.add({cell_m > look.cell_m ? "volume, coarse cells" : "volume", step,
                        double(fire.particles.size()), picture_error(fire.seen.download(), answer, false),
                        time, 1});

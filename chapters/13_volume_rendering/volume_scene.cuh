@@ -82,9 +82,8 @@ inline VolumeScene campfire(std::uint32_t particles) {
 
     scene.look.low_m = {-0.8f, 0, -0.8f};
     scene.look.high_m = {1.0f, 2.5f, 0.8f};
-    scene.look.stage =
-        make_solid(fire::campfire(100).stage, {0.006f, 0.0075f, 0.011f}, {0.0018f, 0.003f, 0.006f});
     scene.look.film = {3.6f, 0.06f};
+    scene.look.stage = make_solid(fire::campfire(100).stage, scene.look.film.exposure);
     scene.look.albedo = 0.5f;
     scene.look.detail.reach_m = 0.045f;
     scene.look.detail.length_m = 0.13f;
@@ -133,8 +132,8 @@ inline VolumeScene torch(std::uint32_t particles) {
     scene.look.cell_m = 0.0042f;
     fire::Stage stick = fire::torch(100).stage;
     for (fire::Rod& rod : stick.rods) rod.embers *= 0.3f;
-    scene.look.stage = make_solid(stick, {0.006f, 0.0075f, 0.011f}, {0.0018f, 0.003f, 0.006f});
-    scene.look.film = {3.0f, 0.06f};
+    scene.look.film = {2.5f, 0.06f};
+    scene.look.stage = make_solid(stick, scene.look.film.exposure);
     scene.look.albedo = 0.5f;
     scene.look.detail.reach_m = 0.020f;
     scene.look.detail.length_m = 0.05f;
@@ -166,7 +165,7 @@ inline VolumeScene vortex_campfire(std::uint32_t particles) {
     const float puffs = float(fire::share(particles, 0.2f)) / float(scene.fire.kind[1].count);
     for (int end = 0; end < 2; ++end) {
         cargos.cargo[0].soot_kg[end] *= 0.6f * flames;
-        cargos.cargo[0].heat_K_m3[end] *= 0.75f * flames;
+        cargos.cargo[0].heat_K_m3[end] *= 0.68f * flames;
         cargos.cargo[1].soot_kg[end] *= puffs;
     }
     for (int k = 2; k < cargos.count; ++k) cargos.cargo[k] = {};  // sparks carry nothing

@@ -615,7 +615,7 @@ namespace {
 Stage dark() {
     Stage stage;
     stage.ground = false;
-    stage.ambient = glm::vec3(0);
+    stage.sky_low = stage.sky_high = glm::vec3(0);
     stage.glare = 0;
     return stage;
 }
@@ -829,6 +829,8 @@ TEST_CASE("the program says what is wrong") {
     };
     refused("--scene candle --dt 0.1", "live only");
     refused("--scene torch --dt nan", "--dt");
+    refused("--scene torch --dt 1e-9", "ages would not grow");
+    refused("--scene torch --dt 1e-30 --steps 1", "ages would not grow");
     refused("--particles 0", "particles");
     refused("--scene bonfire", "bonfire");
     refused("--draw smoke", "--draw");
