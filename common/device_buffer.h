@@ -19,9 +19,10 @@ class DeviceBuffer {
     DeviceBuffer() = default;
 
     /// @throws BadInput when the device has not that much memory, naming the bytes asked for.
-    explicit DeviceBuffer(std::size_t size) : size_(size) {
+    /// @param beyond  elements more, behind the last, that kernels may read but nobody counts as content
+    explicit DeviceBuffer(std::size_t size, std::size_t beyond = 0) : size_(size) {
         if (size == 0) return;
-        const cudaError_t error = cudaMalloc(&data_, size * sizeof(T));
+        const cudaError_t error = cudaMalloc(&data_, (size + beyond) * sizeof(T));
         if (error == cudaErrorMemoryAllocation) {
             cudaGetLastError();  // reported here: don't leave it for the next check to trip over
             throw BadInput("the device has not the " + std::to_string(size * sizeof(T)) + " bytes for " +

@@ -79,7 +79,7 @@ inline std::uint32_t max_cells_for(std::size_t particle_count) {
 /// Calls visit(first_cell, last_cell) for the up to nine rows of three cells around x. Cells of a row have
 /// successive numbers, so when particles are sorted by cell a row is one contiguous range of particles.
 template <class Visit>
-__host__ __device__ void for_each_row(const CellGrid& grid, glm::vec3 x_m, Visit visit) {
+__host__ __device__ __forceinline__ void for_each_row(const CellGrid& grid, glm::vec3 x_m, Visit visit) {
     const glm::ivec3 centre = cell_of(grid, x_m);
     const glm::ivec3 low = glm::max(centre - 1, glm::ivec3(0));
     const glm::ivec3 high = glm::min(centre + 1, grid.size - 1);

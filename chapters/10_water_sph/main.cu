@@ -207,7 +207,7 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         const Settings settings = make_settings(program.options, choices);
         // Start on the host, state on the device, which on the simulator is the host's memory too.
-        course::require_memory(double(settings.particles) * (2 * sizeof(float4) + Water::kBytesPerParticle));
+        course::require_memory(double(settings.particles) * (2 * sizeof(float4) + Water::bytes_per_particle(true)));
         Start start = make_start(settings);
         if (program.options.explain) {
             std::printf("%s", explain(settings, start).c_str());

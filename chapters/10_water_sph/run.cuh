@@ -54,6 +54,7 @@ inline std::vector<std::pair<std::string, int>> launches_per_step(const Settings
             {"scatter_kernel", 1},
             {"sort_cells_kernel", 1},
             {"grid::gather_kernel", 3},
+            {"grid::gather_columns_kernel", settings.choice.viscosity > 0 ? 2 : 1},
             {settings.state == EquationOfState::linear ? "density_kernel<EquationOfState::linear>"
                                                        : "density_kernel<EquationOfState::tait>",
              1},
@@ -71,7 +72,7 @@ inline std::string explain(const Settings& settings, const Start& start) {
         total += count;
     }
     std::string text = "each step: " + std::to_string(total) + " kernels: " + passes + "\n";
-    text += "each particle: " + std::to_string(Water::kBytesPerParticle) +
+    text += "each particle: " + std::to_string(start.water.bytes_per_particle()) +
             " bytes of device memory; cells: " + std::to_string(start.water.cell_bytes()) + " bytes in all\n";
     if (settings.drawing != Drawing::none)
         text += "each particle drawn: " + std::to_string(2 * sizeof(float4)) +

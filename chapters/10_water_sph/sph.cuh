@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "05_spatial_grid/counting_sort.cuh"
+#include "05_spatial_grid/lanes.cuh"
 #include "10_water_sph/smoothing_kernels.cuh"
 #include "10_water_sph/walls.cuh"
 
@@ -53,33 +54,31 @@ inline __host__ __device__ T pressure_of(const Fluid& fluid, T density) {
 /// One thread per particle, particles sorted by cell, so that a row of cells is one stretch of memory.
 /// Density by summation, then the pressure term p / rho^2 that the force pass needs of every neighbour.
 template <EquationOfState kState>
-__global__ void density_kernel(float* density, float* pressure_term, const float4* position,
+__global__ void density_kernel(float* density, float* pressure_term, grid::Columns<const float> position,
                                grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid, Box box,
                                std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
-    const glm::vec3 x = grid::xyz(position[i]);
+    const glm::vec3 x = position[i];
     if (!grid::is_finite(x)) {  // it sits in the limbo; the check of the state will report it
         density[i] = pressure_term[i] = x.x - x.x;
         return;
     }
     const float h = fluid.support_m, per_h_squared = 1.0f / (h * h);
-    float sum = 0;  // of h^3 W, the particle itself included
+    grid::LaneSum<float> sum;  // of h^3 W, the particle itself included
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3) {
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
             const std::uint32_t first = ranges.cell_first[first_cell];
             const std::uint32_t count = ranges.cell_last[last_cell] - first;
-            const float4* x_row = position + first;
-            float row = 0;
-#pragma omp simd reduction(+ : row)
-            for (std::uint32_t k = 0; k < count; ++k) {
-                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
-                row += poly6((dx * dx + dy * dy + dz * dz) * per_h_squared);
-            }
-            sum += row;
+            grid::for_each_in_lanes(first, count, [&](int lane, std::ptrdiff_t k, bool mine) {
+                const float dx = image.x - position.x[k], dy = image.y - position.y[k],
+                            dz = image.z - position.z[k];
+                const float weight = poly6((dx * dx + dy * dy + dz * dz) * per_h_squared);
+                sum.lane[lane] += mine ? weight : 0.0f;
+            });
         });
     });
-    const float rho = fluid.mass_kg * sum / (h * h * h);
+    const float rho = fluid.mass_kg * sum.total() / (h * h * h);
     density[i] = rho;
     pressure_term[i] = pressure_of<kState>(fluid, rho) / (rho * rho);
 }
@@ -89,44 +88,45 @@ __global__ void density_kernel(float* density, float* pressure_term, const float
 /// One thread per particle, particles sorted by cell. Acceleration by pressure, gravity and, if the water has
 /// any, viscosity. The pair terms are symmetric in i and j, so what one particle gains the other loses:
 /// momentum stays.
+/// @param velocity  is not read, and need not exist, without viscosity
 template <bool kViscous>
-__global__ void force_kernel(float4* acceleration, const float4* position, const float4* velocity,
-                             const float* density, const float* pressure_term, grid::CellRanges ranges,
-                             grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+__global__ void force_kernel(float4* acceleration, grid::Columns<const float> position,
+                             grid::Columns<const float> velocity, const float* density,
+                             const float* pressure_term, grid::CellRanges ranges, grid::CellGrid cells,
+                             Fluid fluid, Box box, std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
-    const glm::vec3 x = grid::xyz(position[i]);
+    const glm::vec3 x = position[i];
     if (!grid::is_finite(x)) return;
     const float h = fluid.support_m, per_h = 1.0f / h, own_term = pressure_term[i];
     glm::vec3 pressure(0), viscosity(0);
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
-        const glm::vec3 v = sign * grid::xyz(velocity[i]);
+        glm::vec3 v(0);
+        if constexpr (kViscous) v = sign * velocity[i];
+        grid::LaneSum<float> px, py, pz, vx, vy, vz;
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
             const std::uint32_t first = ranges.cell_first[first_cell];
             const std::uint32_t count = ranges.cell_last[last_cell] - first;
-            const float4 *x_row = position + first, *v_row = velocity + first;
-            const float *density_row = density + first, *term_row = pressure_term + first;
-            float px = 0, py = 0, pz = 0, vx = 0, vy = 0, vz = 0;
-#pragma omp simd reduction(+ : px, py, pz, vx, vy, vz)
-            for (std::uint32_t k = 0; k < count; ++k) {
-                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
+            grid::for_each_in_lanes(first, count, [&](int lane, std::ptrdiff_t k, bool mine) {
+                const float dx = image.x - position.x[k], dy = image.y - position.y[k],
+                            dz = image.z - position.z[k];
                 const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
                 // The particle itself, and one at the very same place, have no direction: they don't push.
                 const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
-                const float push = (own_term + term_row[k]) * spiky_slope(q) * per_r;
-                px += push * dx;
-                py += push * dy;
-                pz += push * dz;
+                const float push = (own_term + pressure_term[k]) * spiky_slope(q) * per_r;
+                px.lane[lane] += mine ? push * dx : 0.0f;
+                py.lane[lane] += mine ? push * dy : 0.0f;
+                pz.lane[lane] += mine ? push * dz : 0.0f;
                 if constexpr (kViscous) {
-                    const float drag = viscosity_laplacian(q) / density_row[k];
-                    vx += drag * (v_row[k].x - v.x);
-                    vy += drag * (v_row[k].y - v.y);
-                    vz += drag * (v_row[k].z - v.z);
+                    const float drag = viscosity_laplacian(q) / density[k];
+                    vx.lane[lane] += mine ? drag * (velocity.x[k] - v.x) : 0.0f;
+                    vy.lane[lane] += mine ? drag * (velocity.y[k] - v.y) : 0.0f;
+                    vz.lane[lane] += mine ? drag * (velocity.z[k] - v.z) : 0.0f;
                 }
-            }
-            pressure += sign * glm::vec3(px, py, pz);  // back through the mirror
-            viscosity += sign * glm::vec3(vx, vy, vz);
+            });
         });
+        pressure += sign * glm::vec3(px.total(), py.total(), pz.total());  // back through the mirror
+        if constexpr (kViscous) viscosity += sign * glm::vec3(vx.total(), vy.total(), vz.total());
     });
     const float per_h4 = per_h * per_h * per_h * per_h;
     glm::vec3 a = fluid.mass_kg * per_h4 * pressure;

@@ -23,18 +23,17 @@ struct Box {
 /// The mirrored neighbours of x are as far from x as the true neighbours are from the image of x. So a sum
 /// over mirrored neighbours is the ordinary sum, done at the image: no mirrored particle is ever stored.
 template <class Visit>
-inline __host__ __device__ void for_each_image(const Box& box, glm::vec3 x, float reach, Visit visit) {
+__host__ __device__ __forceinline__ void for_each_image(const Box& box, glm::vec3 x, float reach,
+                                                        Visit visit) {
     const glm::vec3 low(box.low_m.x, box.low_m.y, box.low_m.z),
         high(box.high_m.x, box.high_m.y, box.high_m.z);
     const glm::vec3 to_low = x - low, to_high = high - x;
     const auto mirrors = [&](int axis) { return to_low[axis] < reach || to_high[axis] < reach; };
-    if (!mirrors(0) && !mirrors(1) && !mirrors(2)) {  // far from every wall, as most particles are
-        visit(x, glm::vec3(1));
-        return;
-    }
-    for (int z = -1; z <= 1; ++z)
-        for (int y = -1; y <= 1; ++y)
-            for (int x_wall = -1; x_wall <= 1; ++x_wall) {
+    // Far from every wall, as most particles are, there is nothing but the point itself.
+    const int walls = mirrors(0) || mirrors(1) || mirrors(2) ? 1 : 0;
+    for (int z = -walls; z <= walls; ++z)
+        for (int y = -walls; y <= walls; ++y)
+            for (int x_wall = -walls; x_wall <= walls; ++x_wall) {
                 const glm::ivec3 wall(x_wall, y, z);  // -1: lower wall, 1: upper wall, 0: not mirrored
                 glm::vec3 image = x, sign(1);
                 bool in_reach = true;

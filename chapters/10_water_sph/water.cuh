@@ -33,6 +33,29 @@ inline TimeStepLimit time_step_limit(const Fluid& fluid) {
 }
 //! [time_step_limit]
 
+/// The arrays of a body of water, n elements each, as something else in the same tank sees them.
+struct WaterArrays {
+    float4 *position, *velocity;
+    float *density, *pressure_term;  ///< pressure_term: p / rho^2
+    std::uint32_t n;
+};
+
+/// Nothing else in the tank.
+struct NoGuest {
+    /// Particles have moved; velocity is the one they moved with. May change both.
+    void after_drift(WaterArrays) {}
+    /// Densities and pressures are those of the water alone. May change both, before they become forces.
+    void after_density(WaterArrays) {}
+};
+
+/// Runs a pass of a step. Whoever wants to know what each of them takes brings another one, with a clock.
+struct RunPass {
+    template <class Pass>
+    void operator()(const char* /*name*/, Pass pass) const {
+        pass();
+    }
+};
+
 /// State of n particles on the device. Move-only.
 class Water {
   public:
@@ -51,26 +74,37 @@ class Water {
           sorted_position_(n_),
           sorted_velocity_(n_),
           acceleration_(n_),
-          density_(n_),
-          pressure_term_(n_),
+          position_columns_(n_),
+          velocity_columns_(is_viscous() ? n_ : 0),
+          density_(n_, grid::kLanes),
+          pressure_term_(n_, grid::kLanes),
           id_(n_),
           sorted_id_(n_) {
         std::vector<std::uint32_t> ids(n_);
         for (std::uint32_t i = 0; i < n_; ++i) ids[i] = i;
         id_.upload(ids);
-        compute_acceleration();
+        NoGuest nobody;
+        compute_acceleration(nobody, RunPass());
     }
 
     //! [step]
     /// One leapfrog step (kick, drift, kick). Waits for nothing: errors of the kernels show at the next copy.
-    void step(float dt_s) {
+    /// @param guest     what else is in the tank: see NoGuest
+    /// @param run_pass  runs the passes, told their names: see RunPass
+    template <class Guest = NoGuest, class Run = RunPass>
+    void step(float dt_s, Guest&& guest = {}, Run run_pass = {}) {
         if (n_ == 0) return;
-        kick_drift_kernel<<<blocks(), kThreads>>>(position_.data(), velocity_.data(), acceleration_.data(),
-                                                  dt_s, box_, n_);
-        CUDA_CHECK(cudaGetLastError());
-        compute_acceleration();
-        kick_kernel<<<blocks(), kThreads>>>(velocity_.data(), acceleration_.data(), dt_s, n_);
-        CUDA_CHECK(cudaGetLastError());
+        run_pass("kick and drift", [&] {
+            kick_drift_kernel<<<blocks(), kThreads>>>(position_.data(), velocity_.data(),
+                                                      acceleration_.data(), dt_s, box_, n_);
+            CUDA_CHECK(cudaGetLastError());
+            guest.after_drift(arrays());
+        });
+        compute_acceleration(guest, run_pass);
+        run_pass("kick", [&] {
+            kick_kernel<<<blocks(), kThreads>>>(velocity_.data(), acceleration_.data(), dt_s, n_);
+            CUDA_CHECK(cudaGetLastError());
+        });
     }
     //! [step]
 
@@ -87,15 +121,25 @@ class Water {
     const Box& box() const { return box_; }
     EquationOfState state() const { return state_; }
     std::uint32_t cell_count() const { return cells_.cell_count(); }
-    std::size_t cell_bytes() const { return sort_.cell_bytes(); }
+    bool is_viscous() const { return fluid_.viscosity_m2_per_s > 0; }
 
-    /// Bytes of device memory per particle, the grid's cells not counted.
-    static constexpr std::size_t kBytesPerParticle = 2 * 2 * sizeof(float4) + sizeof(float4) +
-                                                     2 * sizeof(float) + 2 * sizeof(std::uint32_t) +  // state
-                                                     2 * sizeof(std::uint32_t);  // cell and order
+    /// Bytes of device memory for each particle.
+    static constexpr std::size_t bytes_per_particle(bool viscous) {
+        return (2 * 2 + 1) * sizeof(float4) + 2 * sizeof(std::uint32_t) +  // state, twice; accelerations
+               numbers_per_particle(viscous) * sizeof(float) +             // what neighbours read
+               2 * sizeof(std::uint32_t);                                  // cell and order
+    }
+    std::size_t bytes_per_particle() const { return bytes_per_particle(is_viscous()); }
+    /// Device memory beyond that: the grid's cells, and the ends of what neighbours read (grid::kLanes).
+    std::size_t cell_bytes() const {
+        return sort_.cell_bytes() +
+               (n_ > 0 ? grid::kLanes * numbers_per_particle(is_viscous()) * sizeof(float) : 0);
+    }
 
   private:
     static constexpr std::uint32_t kThreads = 128;
+    /// Position, density and pressure term; the velocity only if there is friction.
+    static constexpr std::size_t numbers_per_particle(bool viscous) { return viscous ? 8 : 5; }
     std::uint32_t blocks() const { return grid::blocks_for(n_, kThreads); }
 
     /// Before any member is made: a grid for a support radius of 0 would never be done.
@@ -114,51 +158,67 @@ class Water {
                                grid::max_cells_for(n_));
     }
 
-    //! [passes]
-    void compute_acceleration() {
-        if (n_ == 0) return;
-        sort_by_cell();
-        switch (state_) {
-            case EquationOfState::linear:
-                density_kernel<EquationOfState::linear>
-                    <<<blocks(), kThreads>>>(density_.data(), pressure_term_.data(), position_.data(),
-                                             sort_.ranges(), cells_, fluid_, box_, n_);
-                break;
-            case EquationOfState::tait:
-                density_kernel<EquationOfState::tait>
-                    <<<blocks(), kThreads>>>(density_.data(), pressure_term_.data(), position_.data(),
-                                             sort_.ranges(), cells_, fluid_, box_, n_);
-                break;
-        }
-        CUDA_CHECK(cudaGetLastError());
-        // Without viscosity its term is not multiplied by zero: it is not in the kernel.
-        if (fluid_.viscosity_m2_per_s > 0)
-            force_kernel<true><<<blocks(), kThreads>>>(
-                acceleration_.data(), position_.data(), velocity_.data(), density_.data(),
-                pressure_term_.data(), sort_.ranges(), cells_, fluid_, box_, n_);
-        else
-            force_kernel<false><<<blocks(), kThreads>>>(
-                acceleration_.data(), position_.data(), velocity_.data(), density_.data(),
-                pressure_term_.data(), sort_.ranges(), cells_, fluid_, box_, n_);
-        CUDA_CHECK(cudaGetLastError());
+    WaterArrays arrays() {
+        return {position_.data(), velocity_.data(), density_.data(), pressure_term_.data(), n_};
     }
 
-    /// Brings particles of a cell together in memory. Accelerations are made anew, so they need not move.
+    //! [passes]
+    template <class Guest, class Run>
+    void compute_acceleration(Guest& guest, Run run_pass) {
+        if (n_ == 0) return;
+        run_pass("sort", [&] { sort_by_cell(); });
+        run_pass("density", [&] {
+            if (state_ == EquationOfState::linear)
+                density_kernel<EquationOfState::linear><<<blocks(), kThreads>>>(
+                    density_.data(), pressure_term_.data(), std::as_const(position_columns_).columns(),
+                    sort_.ranges(), cells_, fluid_, box_, n_);
+            else
+                density_kernel<EquationOfState::tait><<<blocks(), kThreads>>>(
+                    density_.data(), pressure_term_.data(), std::as_const(position_columns_).columns(),
+                    sort_.ranges(), cells_, fluid_, box_, n_);
+            CUDA_CHECK(cudaGetLastError());
+            guest.after_density(arrays());
+        });
+        run_pass("forces", [&] {
+            // Without viscosity its term is not multiplied by zero: it is not in the kernel.
+            const auto position = std::as_const(position_columns_).columns(),
+                       velocity = std::as_const(velocity_columns_).columns();
+            if (is_viscous())
+                force_kernel<true><<<blocks(), kThreads>>>(acceleration_.data(), position, velocity,
+                                                           density_.data(), pressure_term_.data(),
+                                                           sort_.ranges(), cells_, fluid_, box_, n_);
+            else
+                force_kernel<false><<<blocks(), kThreads>>>(acceleration_.data(), position, velocity,
+                                                            density_.data(), pressure_term_.data(),
+                                                            sort_.ranges(), cells_, fluid_, box_, n_);
+            CUDA_CHECK(cudaGetLastError());
+        });
+    }
+
+    /// Brings particles of a cell together in memory, and makes columns of what their neighbours will read.
+    /// Accelerations are made anew, so they need not move.
     void sort_by_cell() {
         sort_.build(position_.data(), cells_, n_);
-        grid::gather_kernel<<<blocks(), kThreads>>>(sorted_position_.data(), position_.data(), sort_.order(),
-                                                    n_);
-        CUDA_CHECK(cudaGetLastError());
-        grid::gather_kernel<<<blocks(), kThreads>>>(sorted_velocity_.data(), velocity_.data(), sort_.order(),
-                                                    n_);
-        CUDA_CHECK(cudaGetLastError());
-        grid::gather_kernel<<<blocks(), kThreads>>>(sorted_id_.data(), id_.data(), sort_.order(), n_);
-        CUDA_CHECK(cudaGetLastError());
+        gather(sorted_position_, position_);
+        gather(sorted_velocity_, velocity_);
+        gather(sorted_id_, id_);
+        gather_columns(position_columns_, position_);
+        if (is_viscous()) gather_columns(velocity_columns_, velocity_);
         std::swap(position_, sorted_position_);
         std::swap(velocity_, sorted_velocity_);
         std::swap(id_, sorted_id_);
     }
     //! [passes]
+
+    template <class T>
+    void gather(course::DeviceBuffer<T>& sorted, const course::DeviceBuffer<T>& data) {
+        grid::gather_kernel<<<blocks(), kThreads>>>(sorted.data(), data.data(), sort_.order(), n_);
+        CUDA_CHECK(cudaGetLastError());
+    }
+    void gather_columns(grid::ColumnBuffer& sorted, const course::DeviceBuffer<float4>& data) {
+        grid::gather_columns_kernel<<<blocks(), kThreads>>>(sorted.columns(), data.data(), sort_.order(), n_);
+        CUDA_CHECK(cudaGetLastError());
+    }
 
     Fluid fluid_;
     Box box_;
@@ -167,6 +227,7 @@ class Water {
     grid::CellGrid cells_;
     grid::CountingSort sort_;
     course::DeviceBuffer<float4> position_, velocity_, sorted_position_, sorted_velocity_, acceleration_;
+    grid::ColumnBuffer position_columns_, velocity_columns_;  // in the order of the cells, as position_ is
     course::DeviceBuffer<float> density_, pressure_term_;
     course::DeviceBuffer<std::uint32_t> id_, sorted_id_;
 };

@@ -521,7 +521,7 @@ TEST_CASE("what --explain says is what happens: launches and bytes, with and wit
             const int gl_objects = course::gl_count().made;
             cudasim::Recording making;
             sph::Start start = sph::make_start(settings);
-            CHECK(making.bytes() == 3000 * Water::kBytesPerParticle + start.water.cell_bytes());
+            CHECK(making.bytes() == 3000 * start.water.bytes_per_particle() + start.water.cell_bytes());
             cudasim::Recording recording;
             start.water.step(start.dt_s);
             start.water.step(start.dt_s);

@@ -296,7 +296,7 @@ TEST_CASE("memory is what N explains, however large the box and however crowded 
             const std::vector<float4> position(n, make_float4(0.5f, 0.5f, 0.5f, 0));
             cudasim::Recording making;
             Water water = make_water(position, Fluid{}, box);
-            CHECK(making.bytes() == n * Water::kBytesPerParticle + water.cell_bytes());
+            CHECK(making.bytes() == n * water.bytes_per_particle() + water.cell_bytes());
             CHECK(water.cell_count() <= 4096 + 4 * n);
             // Two numbers a cell, and the scan's sums of chunks, which are fewer than cells.
             CHECK(water.cell_bytes() <= 3 * sizeof(std::uint32_t) * (4096 + 4 * n + 2));

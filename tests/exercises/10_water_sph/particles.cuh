@@ -2,6 +2,7 @@
 /// Particles of chapter 10 on the device, sorted by cell: what a kernel over the grid starts from.
 #pragma once
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "10_water_sph/sph.cuh"
@@ -40,9 +41,14 @@ class SortedParticles {
         CUDA_CHECK(
             cudaMemcpy(order_.data(), sort_.order(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToHost));
         position_ = to_cells(position);
+        grid::ColumnBuffer columns(n);
+        grid::gather_columns_kernel<<<blocks(), kThreads>>>(columns.columns(), unsorted.data(), sort_.order(),
+                                                            n);
+        CUDA_CHECK(cudaGetLastError());
         course::DeviceBuffer<float> pressure_term(n);
-        sph::density_kernel<sph::EquationOfState::linear><<<blocks(), kThreads>>>(
-            density_.data(), pressure_term.data(), position_.data(), ranges(), cells, fluid, box, n);
+        sph::density_kernel<sph::EquationOfState::linear>
+            <<<blocks(), kThreads>>>(density_.data(), pressure_term.data(), std::as_const(columns).columns(),
+                                     ranges(), cells, fluid, box, n);
         CUDA_CHECK(cudaGetLastError());
     }
 
