@@ -50,7 +50,7 @@ struct Drop {
     std::string name = "drop";
     sph::Box tank{{0, 0, 0}, {0.8f, 0.8f, 0.8f}};
     float3 block_low_m{0.2f, 0.25f, 0.2f}, block_size_m{0.4f, 0.4f, 0.4f};
-    float jitter = 0.15f;  ///< particles start on a lattice, moved by up to so many spacings along each axis
+    float jitter = 0.05f;  ///< particles start on a lattice, moved by up to so many spacings along each axis
 };
 
 /// The thesis's experiment lets particles fall from the middle; its pictures show a block along the left
@@ -59,7 +59,7 @@ inline Drop from_the_middle() {
     return {};
 }
 inline Drop along_the_left_wall() {
-    return {"dam_break", {{0, 0, 0}, {0.9f, 0.8f, 0.4f}}, {0, 0, 0}, {0.4f, 0.4f, 0.4f}, 0.05f};
+    return {"dam_break", {{0, 0, 0}, {0.9f, 0.8f, 0.4f}}, {0, 0, 0}, {0.4f, 0.4f, 0.4f}};
 }
 
 /// One of the two models with its particles.
@@ -81,13 +81,19 @@ class Contestant {
     sph::Box tank;
 };
 
+inline void timed_step(sph::Water& w, float dt_s, PassTimes& times) {
+    w.step(dt_s, sph::NoGuest(), std::ref(times));
+}
+inline void timed_step(spring_mass::Marbles& m, float dt_s, PassTimes& times) {
+    times("all", [&] { m.step(dt_s); });
+}
 /// A model's own class in the contestant's shape.
 template <class Body, class Check>
 class ContestantOf : public Contestant {
   public:
     ContestantOf(Body body, Check check) : body_(std::move(body)), check_(std::move(check)) {}
     void step() override { body_.step(dt_s); }
-    void step(PassTimes& times) override { body_.step(dt_s, std::ref(times)); }
+    void step(PassTimes& times) override { timed_step(body_, dt_s, times); }
     std::uint32_t size() const override { return body_.size(); }
     const float4* position() const override { return std::as_const(body_).position(); }
     const float4* velocity() const override { return std::as_const(body_).velocity(); }
@@ -120,18 +126,20 @@ inline std::unique_ptr<Contestant> make_contestant(const RunPlan& plan, const Dr
             sph::Water(fluid, drop.tank, sph::EquationOfState::linear, start, at_rest), check);
         contestant->dt_s = sph::time_step_limit(fluid).smallest_s();
         contestant->partner_m = fluid.support_m;
-        contestant->bytes_each = sph::Water::kBytesPerParticle;
+        contestant->bytes_each = sph::Water::bytes_per_particle(fluid.viscosity_m2_per_s > 0);
     } else {
         const spring_mass::Box tank{drop.tank.low_m, drop.tank.high_m};
         spring_mass::Scene scene{drop.name, tank, drop.block_low_m, drop.block_size_m, {}};
         scene.touch.stiffness = plan.stiffness;  // smooth marbles: friction 0, as water has none
         const spring_mass::Material material = spring_mass::make_material(scene, spacing_m);
-        const auto check = [summarize = std::make_shared<spring_mass::Summarizer>(plan.particles())](
-                               const spring_mass::Marbles& marbles, int step, float dt_s) {
-            spring_mass::check_state(marbles, (*summarize)(marbles), step, dt_s);
+        spring_mass::Marbles marbles(material, tank, start, at_rest);
+        const auto summarize = std::make_shared<spring_mass::Summarizer>(plan.particles());
+        const auto check = [summarize, start_J = (*summarize)(marbles).energy_J()](
+                               const spring_mass::Marbles& now, int step, float dt_s) {
+            spring_mass::check_state(now, (*summarize)(now), start_J, step, dt_s);
         };
-        contestant = std::make_unique<ContestantOf<spring_mass::Marbles, decltype(check)>>(
-            spring_mass::Marbles(material, tank, start, at_rest), check);
+        contestant =
+            std::make_unique<ContestantOf<spring_mass::Marbles, decltype(check)>>(std::move(marbles), check);
         contestant->dt_s = spring_mass::kStepInLimits * spring_mass::time_step_limit_s(material);
         contestant->partner_m = material.diameter_m;
         contestant->bytes_each = spring_mass::Marbles::kBytesPerMarble;

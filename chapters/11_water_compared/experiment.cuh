@@ -41,6 +41,26 @@ inline glm::vec3 as_vec3(float3 v) {
     return {v.x, v.y, v.z};
 }
 
+//! [explain]
+/// The answer to --explain.
+inline std::string explain(const Experiment& experiment, bool draws) {
+    const std::vector<RunPlan> plans = plans_of(experiment);
+    const int samples = experiment.run.samples;
+    std::string text = std::to_string(plans.size()) + " runs of " + std::to_string(experiment.run.steps) +
+                       " steps, 2^" + std::to_string(experiment.min_exponent) + " to 2^" +
+                       std::to_string(experiment.max_exponent) + " particles\n";
+    text += "each step: the kernels of chapter 09's or 10's step, and nothing else\n";
+    text += "each run: " + std::to_string(samples) +
+            " looks at the particles; each builds a grid and counts twice " +
+            "(neighbours within two spacings, and the model's own partners), outside of the time measured\n";
+    text += "left out: counting and checks in the timed steps\n";
+    text += "left out: timing of single passes in all steps but " + std::to_string(samples) + " of a run\n";
+    text += draws ? "left out: OpenGL in the runs; pictures come from runs of their own\n"
+                  : "left out: OpenGL, its context and all its objects, since nothing is drawn\n";
+    return text;
+}
+//! [explain]
+
 /// Looks at a contestant's particles: how crowded they are, and how high.
 class Observer {
   public:

@@ -217,6 +217,12 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         size_for_the_machine(choices, program.options.steps);
         const Experiment experiment = make_experiment(program.options, choices);
+        course::require_memory(
+            std::ldexp(double(sph::Water::bytes_per_particle(true)) + 200, experiment.max_exponent));
+        if (program.options.explain) {
+            std::printf("%s", explain(experiment, choices.draw != "none").c_str());
+            return;
+        }
         program.result().device = course::device_name();
         const std::vector<RunRecord> records =
             make_runs(experiment, drop_of(program.options.scene), program.options.out / "runs");
