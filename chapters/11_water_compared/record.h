@@ -22,6 +22,7 @@ inline std::string name_of(Model model) {
     return model == Model::sph ? "SPH" : "spring-mass";
 }
 
+//! [RunPlan]
 /// Everything that the numbers of a run depend on, the machine aside.
 struct RunPlan {
     Model model = Model::sph;
@@ -35,6 +36,7 @@ struct RunPlan {
 
     std::uint32_t particles() const { return 1u << exponent; }
 };
+//! [RunPlan]
 
 /// How things stand at one step. Neighbours and cells are counted at the same distance for both models, two
 /// particle spacings; partners are what the model itself computes with: particles in the support radius, or
