@@ -20,14 +20,16 @@ enum class Floor {
     springs,          ///< a push on particles nearer than half a spacing; beyond it there is nothing
 };
 
-/// A shaft eight spacings wide, with mirrors at its sides and water that has come to rest in it. Leapfrog runs
-/// on the host: the water is made anew at each step, for its forces alone, so that any floor will do.
+/// A shaft eight spacings wide, with mirrors at its sides and water that has come to rest in it. Leapfrog
+/// runs on the host: the water is made anew at each step, for its forces alone, so that any floor will do.
 class Column {
   public:
     static constexpr float kHeight_m = 1, kWide = 8;
 
     Column(Floor floor, int spacings_high)
-        : floor_(floor), spacing_m_(kHeight_m / spacings_high), box_{{0, 0, 0}, {width(), 2, width()}, {Wall::periodic, Wall::slip, Wall::periodic}} {
+        : floor_(floor),
+          spacing_m_(kHeight_m / spacings_high),
+          box_{{0, 0, 0}, {width(), 2, width()}, {Wall::periodic, Wall::slip, Wall::periodic}} {
         Scene shaft{"shaft", box_, {0, 0, 0}, {width(), kHeight_m, width()}};
         float spacing_m = 0;
         position_ = fill_block(shaft, std::uint32_t(kWide * kWide) * spacings_high, 1, spacing_m);
