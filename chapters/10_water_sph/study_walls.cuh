@@ -103,4 +103,101 @@ class Column {
     std::vector<float> density_;
 };
 
+//! [floor_report]
+/// What a column's last fifth of `time_s` says of its floor.
+struct FloorReport {
+    double pressure_error = 0;  ///< rms over layers of p - rho g d, over rho g H
+    double lowest = 0;          ///< place of the lowest particle that is not floor, in spacings above it
+    /// Rms of (number of particles in a fifth of a spacing / its mean) - 1, for the four spacings nearest the
+    /// floor, and in the middle of the column. All of it is chance in water without order.
+    double layering[4] = {}, middle = 0;
+    int steps = 0;
+};
+
+inline FloorReport floor_report(Floor floor, int spacings_high, double time_s) {
+    constexpr int kBins = 5;  // to a spacing
+    Column column(floor, spacings_high);
+    FloorReport report;
+    report.lowest = 1e30;
+    report.steps = int(std::ceil(time_s / column.dt_s()));
+    const double g = 9.81, rho0 = column.fluid().rest_density_kg_per_m3, H = Column::kHeight_m;
+    std::vector<double> number(kBins * spacings_high, 0), pressure(spacings_high, 0), depth(spacings_high, 0),
+        counted(spacings_high, 0);
+    int looks = 0;
+    for (int step = 1; step <= report.steps; ++step) {
+        column.step();
+        if (step < 0.8 * report.steps || step % 10 != 0) continue;
+        ++looks;
+        for (std::size_t i = 0; i < column.moving(); ++i) {
+            const double y = column.position()[i].y / column.spacing_m();
+            report.lowest = std::min(report.lowest, y);
+            if (y < 0 || y >= spacings_high) continue;
+            ++number[int(y * kBins)];
+            ++counted[int(y)];
+            depth[int(y)] += H - column.position()[i].y;
+            pressure[int(y)] +=
+                pressure_of<EquationOfState::linear>(column.fluid(), double(column.density()[i]));
+        }
+    }
+    for (int layer = 0; layer < spacings_high; ++layer) {
+        const double error = counted[layer] > 0  // an empty layer carries nothing
+                                 ? (pressure[layer] - rho0 * g * depth[layer]) / counted[layer]
+                                 : rho0 * g * (H - (layer + 0.5) * column.spacing_m());
+        report.pressure_error += error * error / spacings_high;
+    }
+    report.pressure_error = std::sqrt(report.pressure_error) / (rho0 * g * H);
+    const auto layering = [&](int from, int to) {
+        const double mean = double(looks) * Column::kWide * Column::kWide / kBins;
+        double sum = 0;
+        for (int bin = kBins * from; bin < kBins * to; ++bin)
+            sum += (number[bin] / mean - 1) * (number[bin] / mean - 1);
+        return std::sqrt(sum / (kBins * (to - from)));
+    };
+    for (int k = 0; k < 4; ++k) report.layering[k] = layering(k, k + 1);
+    report.middle = layering(spacings_high / 2 - 2, spacings_high / 2 + 2);
+    return report;
+}
+//! [floor_report]
+
+inline std::string name_of(Floor floor) {
+    return floor == Floor::mirror            ? "mirror"
+           : floor == Floor::fixed_particles ? "two layers of fixed particles"
+                                             : "springs";
+}
+
+inline void study_floor(course::Study& study) {
+    course::on_device(study);
+    const std::vector<int> heights = study.quick ? std::vector<int>{8, 12} : std::vector<int>{10, 15, 20, 30};
+    const Floor floors[] = {Floor::mirror, Floor::fixed_particles, Floor::springs};
+    study.expect(int(3 * heights.size()));
+    for (const int high : heights) {
+        std::vector<Water> waters;
+        for (const Floor floor : floors) waters.push_back(Column(floor, high).water());
+        const std::vector<course::Timing> per_step = time_steps(waters, study.quick ? 3 : 9);
+        for (int k = 0; k < 3; ++k) {
+            const FloorReport report = floor_report(floors[k], high, study.quick ? 1 : 2);
+            study.add({name_of(floors[k]), double(high), double(waters[k].size()), report.pressure_error,
+                       per_step[k], double(report.steps)});
+        }
+    }
+}
+
+inline void study_layers(course::Study& study) {
+    course::on_device(study);
+    const int high = study.quick ? 10 : 20;
+    study.expect(15);
+    for (const Floor floor : {Floor::mirror, Floor::fixed_particles, Floor::springs}) {
+        std::vector<Water> waters;
+        waters.push_back(Column(floor, high).water());
+        const course::Timing per_step = time_steps(waters, study.quick ? 3 : 9)[0];
+        const FloorReport report = floor_report(floor, high, study.quick ? 1 : 3);
+        const auto add = [&](double distance, double layering) {
+            study.add({name_of(floor), distance, double(waters[0].size()), layering, per_step,
+                       double(report.steps)});
+        };
+        for (int k = 0; k < 4; ++k) add(k + 0.5, report.layering[k]);
+        add(0.5 * high, report.middle);
+    }
+}
+
 }  // namespace sph
