@@ -101,8 +101,9 @@ __global__ void force_kernel(float4* acceleration, grid::Columns<const float> po
     const float h = fluid.support_m, per_h = 1.0f / h, own_term = pressure_term[i];
     glm::vec3 pressure(0), viscosity(0);
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+        const glm::vec3 moves = velocity_sign(box, sign);
         glm::vec3 v(0);
-        if constexpr (kViscous) v = sign * velocity[i];
+        if constexpr (kViscous) v = moves * velocity[i];
         grid::LaneSum<float> px, py, pz, vx, vy, vz;
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
             const std::uint32_t first = ranges.cell_first[first_cell];
@@ -126,7 +127,7 @@ __global__ void force_kernel(float4* acceleration, grid::Columns<const float> po
             });
         });
         pressure += sign * glm::vec3(px.total(), py.total(), pz.total());  // back through the mirror
-        if constexpr (kViscous) viscosity += sign * glm::vec3(vx.total(), vy.total(), vz.total());
+        if constexpr (kViscous) viscosity += moves * glm::vec3(vx.total(), vy.total(), vz.total());
     });
     const float per_h4 = per_h * per_h * per_h * per_h;
     glm::vec3 a = fluid.mass_kg * per_h4 * pressure;
@@ -140,26 +141,15 @@ __global__ void force_kernel(float4* acceleration, grid::Columns<const float> po
 
 //! [kick_drift_kernel]
 /// One thread per particle: first half of the leapfrog step, v += dt/2 a, then x += dt v. The box is closed:
-/// a particle that would leave it stops at the wall and loses the velocity into it. (The walls' pressure
-/// turns nearly all particles back before that.)
+/// a particle that would leave it is put back. (The walls' pressure turns nearly all particles back before
+/// that.)
 inline __global__ void kick_drift_kernel(float4* position, float4* velocity, const float4* acceleration,
                                          float dt_s, Box box, std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
     glm::vec3 v = grid::xyz(velocity[i]) + 0.5f * dt_s * grid::xyz(acceleration[i]);
     glm::vec3 x = grid::xyz(position[i]) + dt_s * v;
-    const glm::vec3 low(box.low_m.x, box.low_m.y, box.low_m.z),
-        high(box.high_m.x, box.high_m.y, box.high_m.z);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (x[axis] < low[axis]) {
-            x[axis] = low[axis];
-            v[axis] = 0;
-        }
-        if (x[axis] > high[axis]) {
-            x[axis] = high[axis];
-            v[axis] = 0;
-        }
-    }
+    keep_inside(box, x, v);
     position[i] = make_float4(x.x, x.y, x.z, 0.0f);
     velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
 }

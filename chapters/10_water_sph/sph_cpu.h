@@ -32,7 +32,8 @@ struct Mirrored {
     glm::vec<3, T> position_m, velocity_m_per_s;
 };
 
-/// All particles with all their images in the box's walls, edges and corners: 27 for each.
+/// All particles with all their images in the box's walls, edges and corners, or beyond its periodic ends: 27
+/// for each.
 template <class T>
 std::vector<Mirrored<T>> with_images(const Points<T>& position, const Points<T>& velocity, const Box& box) {
     const glm::vec<3, T> low(box.low_m.x, box.low_m.y, box.low_m.z),
@@ -43,8 +44,16 @@ std::vector<Mirrored<T>> with_images(const Points<T>& position, const Points<T>&
             Mirrored<T> m{i, position[i], velocity[i]};
             for (int axis = 0, rest = image; axis < 3; ++axis, rest /= 3) {
                 if (rest % 3 == 0) continue;
-                m.position_m[axis] = 2 * (rest % 3 == 1 ? low : high)[axis] - m.position_m[axis];
-                m.velocity_m_per_s[axis] = -m.velocity_m_per_s[axis];
+                const bool at_low = rest % 3 == 1;
+                if (box.wall[axis] == Wall::periodic) {
+                    m.position_m[axis] += (at_low ? T(-1) : T(1)) * (high[axis] - low[axis]);
+                    continue;
+                }
+                m.position_m[axis] = 2 * (at_low ? low : high)[axis] - m.position_m[axis];
+                if (box.wall[axis] == Wall::slip)
+                    m.velocity_m_per_s[axis] = -m.velocity_m_per_s[axis];
+                else
+                    m.velocity_m_per_s = -m.velocity_m_per_s;
             }
             all.push_back(m);
         }

@@ -2,10 +2,13 @@
 /// What this chapter measures: `--study NAME` and `--stability NAME`.
 #pragma once
 #include "10_water_sph/stability_maps.cuh"
+#include "10_water_sph/study_flows.cuh"
+#include "10_water_sph/study_front.cuh"
 #include "10_water_sph/study_precision.cuh"
 #include "10_water_sph/study_stiffness.cuh"
 #include "10_water_sph/study_support.cuh"
 #include "10_water_sph/study_time_step.cuh"
+#include "10_water_sph/study_walls.cuh"
 #include "common/program.h"
 
 namespace sph {
@@ -33,6 +36,27 @@ inline void declare_studies(course::Program& program) {
     program.study({"equation", "Which equation of state gives way less for the time it takes?",
                    "compression: rms of max(rho / rho0 - 1, 0)", "stiffness"},
                   study_equation);
+    program.study({"floor", "Which floor carries a still column best?",
+                   "pressure: rms of p - rho g d over layers / rho g H", "spacings_high"},
+                  study_floor);
+    program.study({"layers", "How far into the water does a floor put it in layers?",
+                   "layering: rms of number of particles / mean - 1, in fifths of a spacing",
+                   "distance_in_spacings", course::StudyPlot::error_against_time, false, true},
+                  study_layers);
+    program.study({"sound_speed", "How fine must water be for sound of a given length?",
+                   "speed of sound: measured / c - 1", "spacings_in_wavelength"},
+                  study_sound_speed);
+    program.study(
+        {"poiseuille", "How fine must water between two plates be?",
+         "velocity: largest difference at five times / fastest velocity", "spacings_between_plates"},
+        study_poiseuille);
+    program.study({"taylor_green", "How much friction do particles add to the fluid's?",
+                   "viscosity: that which slows the vortices / the fluid's - 1", "spacings_in_square",
+                   course::StudyPlot::error_against_time, true},
+                  study_taylor_green);
+    program.study({"front", "How fine must a collapsing column be for its front to run as it does in nature?",
+                   "speed of the front: relative difference from the measured one", "spacings_wide"},
+                  study_front);
     program.stability({"sound", "How large may a step be before sound explodes?", kStableWhen,
                        "leapfrog on a cubic lattice: 0.985 h / c", "sound speed c (m/s)"},
                       map_sound);
