@@ -3,6 +3,7 @@
 #pragma once
 #include "10_water_sph/stability_maps.cuh"
 #include "10_water_sph/study_precision.cuh"
+#include "10_water_sph/study_speed.cuh"
 #include "10_water_sph/study_stiffness.cuh"
 #include "10_water_sph/study_support.cuh"
 #include "10_water_sph/study_time_step.cuh"
@@ -33,6 +34,10 @@ inline void declare_studies(course::Program& program) {
     program.study({"equation", "Which equation of state gives way less for the time it takes?",
                    "compression: rms of max(rho / rho0 - 1, 0)", "stiffness"},
                   study_equation);
+    program.study({"speed", "What does it bring to read neighbours in whole vectors?",
+                   "acceleration: rms difference from the same sums in double, relative", "n",
+                   course::StudyPlot::time_against_value, true},
+                  study_speed);
     program.stability({"sound", "How large may a step be before sound explodes?", kStableWhen,
                        "leapfrog on a cubic lattice: 0.985 h / c", "sound speed c (m/s)"},
                       map_sound);
