@@ -145,6 +145,7 @@ inline void study_speed(course::Study& study) {
         for (const std::uint32_t n : sizes) {
             Start start = moving_water(n, support);
             const int steps = std::max(2, int((study.quick ? 1u << 16 : 1u << 17) / n));
+            std::fflush(stdout);  // what is measured so far is not lost if the rest takes too long
             std::vector<std::function<void()>> works;
             std::vector<std::vector<double>> processor_s(std::size(kPassVariants));
             for (std::size_t k = 0; k < std::size(kPassVariants); ++k)
