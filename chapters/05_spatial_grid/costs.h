@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "04_parallel_patterns/scan.cuh"
+#include "05_spatial_grid/lanes.cuh"
 
 namespace grid {
 
@@ -23,7 +24,7 @@ struct Cost {
 
 constexpr const char* kThrustSort = "thrust::stable_sort_by_key";  // as many kernels as Thrust thinks fit
 
-/// The four methods on n particles in a grid of `cells` cells.
+/// The five methods on n particles in a grid of `cells` cells.
 inline std::vector<Cost> costs(std::size_t n, std::uint32_t cells) {
     const std::uint32_t offsets = cells + 2;  // with the limbo, and the end of the last cell
     const int levels = ExclusiveScan::levels(offsets);
@@ -31,19 +32,22 @@ inline std::vector<Cost> costs(std::size_t n, std::uint32_t cells) {
     by_counting.insert(by_counting.end(), levels, "chunk_sums_kernel");
     by_counting.insert(by_counting.end(), levels, "scan_chunks_kernel");
     by_counting.insert(by_counting.end(), {"scatter_kernel", "sort_cells_kernel"});
-    std::vector<std::string> and_gather = by_counting;
+    std::vector<std::string> and_gather = by_counting, and_gather_columns = by_counting;
     and_gather.push_back("gather_kernel");
+    and_gather_columns.push_back("gather_columns_kernel");
 
     const std::size_t particles = n * (16 + 4);  // float4 position, count
     const std::size_t sorted = n * (4 + 4);      // cell, order
     const std::size_t counting = particles + sorted + 2 * 4 * offsets + ExclusiveScan(offsets).bytes();
-    return {{"brute force", {}, {"neighbours_brute_force_kernel"}, particles},
-            {"sorted grid",
-             {"key_kernel", kThrustSort, "find_ranges_kernel"},
-             {"neighbours_scattered_kernel"},
-             particles + sorted + 2 * 4 * (cells + 1)},
-            {"counting sort", by_counting, {"neighbours_scattered_kernel"}, counting},
-            {"reordered", and_gather, {"neighbours_coherent_kernel"}, counting + 16 * n}};
+    return {
+        {"brute force", {}, {"neighbours_brute_force_kernel"}, particles},
+        {"sorted grid",
+         {"key_kernel", kThrustSort, "find_ranges_kernel"},
+         {"neighbours_scattered_kernel"},
+         particles + sorted + 2 * 4 * (cells + 1)},
+        {"counting sort", by_counting, {"neighbours_scattered_kernel"}, counting},
+        {"reordered", and_gather, {"neighbours_coherent_kernel"}, counting + 16 * n},
+        {"whole vectors", and_gather_columns, {"neighbours_in_lanes_kernel"}, counting + 12 * (n + kLanes)}};
 }
 
 }  // namespace grid

@@ -1,4 +1,4 @@
-// Chapter 05: neighbours by brute force and over the grid, in three steps. What they cost is measured by its
+// Chapter 05: neighbours by brute force and over the grid, in four steps. What they cost is measured by its
 // studies.
 #include "05_spatial_grid/costs.h"
 #include "05_spatial_grid/pictures.h"
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
         neighbours_by_all_methods(cloud);
         result.table(methods_table(o.particles, cloud.cells));
         result.table(crowding_table(o.seed));
-        result.note("The four methods find the same neighbours for every particle asked: the error is 0.");
+        result.note("The five methods find the same neighbours for every particle asked: the error is 0.");
         result.note("Times: ./course run 05 --study neighbours, and --study occupancy.");
     });
 }

@@ -1,11 +1,12 @@
 /// @file
-/// The four ways to find neighbours, on one cloud of particles: made ready to be run, compared and timed.
+/// The five ways to find neighbours, on one cloud of particles: made ready to be run, compared and timed.
 #pragma once
 #include <functional>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "05_spatial_grid/neighbours.cuh"
 #include "05_spatial_grid/sorted_grid.cuh"
@@ -17,11 +18,17 @@ struct Cloud {
     std::uint32_t n;
     float radius_m;
     course::DeviceBuffer<float4> position, sorted_position;
+    ColumnBuffer sorted_columns;
     course::DeviceBuffer<std::uint32_t> count;
     CellGrid cells;
 
     Cloud(const std::vector<float4>& points, float radius)
-        : n(std::uint32_t(points.size())), radius_m(radius), position(points), sorted_position(n), count(n) {
+        : n(std::uint32_t(points.size())),
+          radius_m(radius),
+          position(points),
+          sorted_position(n),
+          sorted_columns(n),
+          count(n) {
         const Bounds box = find_bounds(position.data(), n);
         cells = make_grid(box.low_m, box.high_m, radius_m, max_cells_for(n));
     }
@@ -57,6 +64,15 @@ inline std::vector<Method> methods(Cloud& cloud) {
                                                          cloud.radius_m, cloud.n);
         CUDA_CHECK(cudaGetLastError());
     };
+    const auto counts_by_number = [&cloud, counted] {
+        const std::vector<std::uint32_t> in_cell_order = cloud.count.download();
+        std::vector<std::uint32_t> order(cloud.n), by_number(cloud.n);
+        CUDA_CHECK(
+            cudaMemcpy(order.data(), counted->order(), cloud.n * sizeof order[0], cudaMemcpyDeviceToHost));
+        for (std::uint32_t place = 0; place < cloud.n; ++place)
+            by_number[order[place]] = in_cell_order[place];
+        return by_number;
+    };
     return {
         {"brute force", [] {},
          [&cloud] {
@@ -87,15 +103,21 @@ inline std::vector<Method> methods(Cloud& cloud) {
                                                              cloud.n);
              CUDA_CHECK(cudaGetLastError());
          },
-         [&cloud, counted] {
-             const std::vector<std::uint32_t> in_cell_order = cloud.count.download();
-             std::vector<std::uint32_t> order(cloud.n), by_number(cloud.n);
-             CUDA_CHECK(cudaMemcpy(order.data(), counted->order(), cloud.n * sizeof order[0],
-                                   cudaMemcpyDeviceToHost));
-             for (std::uint32_t place = 0; place < cloud.n; ++place)
-                 by_number[order[place]] = in_cell_order[place];
-             return by_number;
-         }}};
+         counts_by_number},
+        {"whole vectors",
+         [&cloud, counted, blocks] {
+             counted->build(cloud.position.data(), cloud.cells, cloud.n);
+             gather_columns_kernel<<<blocks, threads>>>(cloud.sorted_columns.columns(), cloud.position.data(),
+                                                        counted->order(), cloud.n);
+             CUDA_CHECK(cudaGetLastError());
+         },
+         [&cloud, counted, blocks] {
+             neighbours_in_lanes_kernel<<<blocks, threads>>>(
+                 cloud.count.data(), std::as_const(cloud.sorted_columns).columns(), counted->ranges(),
+                 cloud.cells, cloud.radius_m, cloud.n);
+             CUDA_CHECK(cudaGetLastError());
+         },
+         counts_by_number}};
 }
 
 /// Particles, of those that both were asked for, whose number of neighbours differs.

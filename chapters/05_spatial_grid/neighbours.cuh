@@ -1,10 +1,11 @@
 /// @file
-/// Neighbours counted four ways: by brute force, and over the grid in three steps that each do one thing
+/// Neighbours counted five ways: by brute force, and over the grid in four steps that each do one thing
 /// better.
 #pragma once
 #include <cuda_runtime.h>
 
 #include "05_spatial_grid/counting_sort.cuh"
+#include "05_spatial_grid/lanes.cuh"
 
 namespace grid {
 
@@ -90,5 +91,29 @@ inline __global__ void neighbours_coherent_kernel(std::uint32_t* sorted_count, c
     sorted_count[place] = near;
 }
 //! [coherent]
+
+//! [in_lanes]
+/// Only the difference: positions as columns, read in whole vectors, and one sum for each lane.
+/// @pre as above; the columns have kLanes elements more than there are particles
+inline __global__ void neighbours_in_lanes_kernel(std::uint32_t* sorted_count, Columns<const float> sorted,
+                                                  CellRanges ranges, CellGrid grid, float radius_m,
+                                                  std::uint32_t n) {
+    const std::uint32_t place = blockIdx.x * blockDim.x + threadIdx.x;
+    if (place >= n) return;
+    const glm::vec3 x = sorted[place];
+    const float radius_squared = radius_m * radius_m;
+    LaneSum<int> near;
+    if (is_finite(x))
+        for_each_row(grid, x, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+            const std::uint32_t first = ranges.cell_first[first_cell];
+            const std::uint32_t candidates = ranges.cell_last[last_cell] - first;
+            for_each_in_lanes(first, candidates, [&](int lane, std::ptrdiff_t k, bool mine) {
+                const glm::vec3 other(sorted.x[k], sorted.y[k], sorted.z[k]);
+                near.lane[lane] += is_near(x, other, radius_squared) & mine;
+            });
+        });
+    sorted_count[place] = is_finite(x) ? near.total() - 1 : 0;
+}
+//! [in_lanes]
 
 }  // namespace grid

@@ -51,12 +51,12 @@ inline void add_methods(course::Study& study, Cloud& cloud, double value) {
 }
 //! [add_methods]
 
-constexpr int kRowsPerCloud = 7;
+constexpr int kRowsPerCloud = 9;
 
 inline void study_neighbours(course::Study& study) {
     course::on_device(study);
     std::vector<std::uint32_t> sizes{1u << 10, 1u << 12, 1u << 14};
-    if (!study.quick) sizes.insert(sizes.end(), {1u << 16, 1u << 18});
+    if (!study.quick) sizes.insert(sizes.end(), {1u << 16, 1u << 17, 1u << 18});
     if (study.backend == "cuda") sizes.push_back(1u << 20);
     study.expect(int(sizes.size()) * kRowsPerCloud);
     for (const std::uint32_t n : sizes) {

@@ -73,12 +73,14 @@ inline std::string explain(const Settings& settings, const Start& start) {
     }
     std::string text = "each step: " + std::to_string(total) + " kernels: " + passes + "\n";
     text += "each particle: " + std::to_string(start.water.bytes_per_particle()) +
-            " bytes of device memory; cells: " + std::to_string(start.water.cell_bytes()) + " bytes in all\n";
+            " bytes of device memory; cells and the ends of columns: " +
+            std::to_string(start.water.cell_bytes()) + " bytes in all\n";
     if (settings.drawing != Drawing::none)
         text += "each particle drawn: " + std::to_string(2 * sizeof(float4)) +
                 " bytes in 2 OpenGL buffers, copied on the device for each picture\n";
     if (settings.choice.viscosity == 0)
-        text += "left out: the viscosity term (compiled out of force_kernel)\n";
+        text +=
+            "left out: the viscosity term (compiled out of force_kernel), and the columns of velocities\n";
     text += settings.state == EquationOfState::linear ? "left out: Tait's equation of state\n"
                                                       : "left out: the linear equation of state\n";
     text +=

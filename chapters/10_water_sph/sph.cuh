@@ -99,12 +99,15 @@ __global__ void force_kernel(float4* acceleration, grid::Columns<const float> po
     const glm::vec3 x = position[i];
     if (!grid::is_finite(x)) return;
     const float h = fluid.support_m, per_h = 1.0f / h, own_term = pressure_term[i];
-    glm::vec3 pressure(0), viscosity(0);
+    const float friction = fluid.viscosity_m2_per_s * fluid.rest_density_kg_per_m3 * per_h / density[i];
+    glm::vec3 sum(0);  // of both terms, but for the factor they share: mass / h^4
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
         const glm::vec3 moves = velocity_sign(box, sign);
         glm::vec3 v(0);
+        // The sum goes back through the mirror as a whole; what friction adds is turned so that it fits.
+        const glm::vec3 turned = sign * moves;
         if constexpr (kViscous) v = moves * velocity[i];
-        grid::LaneSum<float> px, py, pz, vx, vy, vz;
+        grid::LaneSum<float> sum_x, sum_y, sum_z;
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
             const std::uint32_t first = ranges.cell_first[first_cell];
             const std::uint32_t count = ranges.cell_last[last_cell] - first;
@@ -115,25 +118,21 @@ __global__ void force_kernel(float4* acceleration, grid::Columns<const float> po
                 // The particle itself, and one at the very same place, have no direction: they don't push.
                 const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
                 const float push = (own_term + pressure_term[k]) * spiky_slope(q) * per_r;
-                px.lane[lane] += mine ? push * dx : 0.0f;
-                py.lane[lane] += mine ? push * dy : 0.0f;
-                pz.lane[lane] += mine ? push * dz : 0.0f;
+                float ax = push * dx, ay = push * dy, az = push * dz;
                 if constexpr (kViscous) {
-                    const float drag = viscosity_laplacian(q) / density[k];
-                    vx.lane[lane] += mine ? drag * (velocity.x[k] - v.x) : 0.0f;
-                    vy.lane[lane] += mine ? drag * (velocity.y[k] - v.y) : 0.0f;
-                    vz.lane[lane] += mine ? drag * (velocity.z[k] - v.z) : 0.0f;
+                    const float drag = friction * viscosity_laplacian(q) / density[k];
+                    ax += drag * turned.x * (velocity.x[k] - v.x);
+                    ay += drag * turned.y * (velocity.y[k] - v.y);
+                    az += drag * turned.z * (velocity.z[k] - v.z);
                 }
+                sum_x.lane[lane] += mine ? ax : 0.0f;
+                sum_y.lane[lane] += mine ? ay : 0.0f;
+                sum_z.lane[lane] += mine ? az : 0.0f;
             });
         });
-        pressure += sign * glm::vec3(px.total(), py.total(), pz.total());  // back through the mirror
-        if constexpr (kViscous) viscosity += moves * glm::vec3(vx.total(), vy.total(), vz.total());
+        sum += sign * glm::vec3(sum_x.total(), sum_y.total(), sum_z.total());  // back through the mirror
     });
-    const float per_h4 = per_h * per_h * per_h * per_h;
-    glm::vec3 a = fluid.mass_kg * per_h4 * pressure;
-    if constexpr (kViscous)
-        a += fluid.viscosity_m2_per_s * fluid.rest_density_kg_per_m3 * fluid.mass_kg * per_h4 * per_h /
-             density[i] * viscosity;
+    const glm::vec3 a = fluid.mass_kg * per_h * per_h * per_h * per_h * sum;
     const float3 g = fluid.gravity_m_per_s2;
     acceleration[i] = make_float4(a.x + g.x, a.y + g.y, a.z + g.z, 0.0f);
 }

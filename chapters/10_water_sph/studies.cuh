@@ -5,6 +5,7 @@
 #include "10_water_sph/study_flows.cuh"
 #include "10_water_sph/study_front.cuh"
 #include "10_water_sph/study_precision.cuh"
+#include "10_water_sph/study_speed.cuh"
 #include "10_water_sph/study_stiffness.cuh"
 #include "10_water_sph/study_support.cuh"
 #include "10_water_sph/study_time_step.cuh"
@@ -57,6 +58,10 @@ inline void declare_studies(course::Program& program) {
     program.study({"front", "How fine must a collapsing column be for its front to run as it does in nature?",
                    "speed of the front: relative difference from the measured one", "spacings_wide"},
                   study_front);
+    program.study({"speed", "What does it bring to read neighbours in whole vectors?",
+                   "acceleration: rms difference from the same sums in double, relative", "n",
+                   course::StudyPlot::time_against_value, true},
+                  study_speed);
     program.stability({"sound", "How large may a step be before sound explodes?", kStableWhen,
                        "leapfrog on a cubic lattice: 0.985 h / c", "sound speed c (m/s)"},
                       map_sound);

@@ -37,6 +37,11 @@ inline TimeStepLimit time_step_limit(const Fluid& fluid) {
 struct WaterArrays {
     float4 *position, *velocity;
     float *density, *pressure_term;  ///< pressure_term: p / rho^2
+    float4* acceleration;
+    /// Made by the last sort, like the order of all arrays. velocity_columns: only if there is friction.
+    grid::Columns<const float> position_columns, velocity_columns;
+    grid::CellRanges ranges;
+    grid::CellGrid cells;
     std::uint32_t n;
 };
 
@@ -117,6 +122,19 @@ class Water {
     const course::DeviceBuffer<float4>& accelerations() const { return acceleration_; }
     const course::DeviceBuffer<float>& densities() const { return density_; }
     const course::DeviceBuffer<std::uint32_t>& ids() const { return id_; }
+    /// All of it, to be read or changed between steps or, by a guest, within one.
+    WaterArrays arrays() {
+        return {position_.data(),
+                velocity_.data(),
+                density_.data(),
+                pressure_term_.data(),
+                acceleration_.data(),
+                std::as_const(position_columns_).columns(),
+                std::as_const(velocity_columns_).columns(),
+                sort_.ranges(),
+                cells_,
+                n_};
+    }
     const Fluid& fluid() const { return fluid_; }
     const Box& box() const { return box_; }
     EquationOfState state() const { return state_; }
@@ -156,10 +174,6 @@ class Water {
         return grid::make_grid({box_.low_m.x, box_.low_m.y, box_.low_m.z},
                                {box_.high_m.x, box_.high_m.y, box_.high_m.z}, fluid_.support_m,
                                grid::max_cells_for(n_));
-    }
-
-    WaterArrays arrays() {
-        return {position_.data(), velocity_.data(), density_.data(), pressure_term_.data(), n_};
     }
 
     //! [passes]

@@ -655,8 +655,9 @@ TEST_CASE("a study and a stability map come out as rows") {
         CHECK_MESSAGE(run.output.find(part) != std::string::npos, part << " in: " << run.output);
     const course::ProgramRun list = run_program("--list-studies");
     CHECK(list.exit_code == 0);
-    for (const char* name : {"study support", "study time_step", "study energy", "study precision",
-                             "study stiffness", "study equation", "stability sound", "stability viscosity"})
+    for (const char* name :
+         {"study support", "study time_step", "study energy", "study precision", "study stiffness",
+          "study equation", "study speed", "stability sound", "stability viscosity"})
         CHECK_MESSAGE(list.output.find(name) != std::string::npos, name << " in: " << list.output);
 }
 
