@@ -145,7 +145,7 @@ TEST_CASE("the front of a collapsing column runs as fast as Martin and Moyce's")
     // 5 %: times are given to 0.01 of 1.5, marks to 0.01 of 2, and what a tongue's tip is, is a matter of
     // taste of one particle, 0.05.
     CHECK(std::abs(speed / measured - 1) < 0.05);
-    // Ours is ahead by a fifth of T (17 ms) at most: their gate took its time, and t = 0 is read off a film.
+    // Ours is ahead by a fifth of T (11 ms) at most: their gate took its time, and t = 0 is read off a film.
     CHECK(latest < 0.1);
     CHECK(earliest > -0.25);
 }
