@@ -121,33 +121,43 @@ class Summarizer {
     course::DeviceBuffer<Summary> chunks_;
 };
 
+/// What went wrong with this marble, and whether the step is to blame.
+[[noreturn]] inline void stop(const Marbles& marbles, std::uint32_t place, int step, float dt_s,
+                              const std::string& what) {
+    const float limit_s = time_step_limit_s(marbles.material());
+    const float4 x = marbles.positions().download()[place], v = marbles.velocities().download()[place];
+    char who[192], why[128];
+    std::snprintf(who, sizeof who, "step %d: marble %u at (%g, %g, %g) m moves at (%g, %g, %g) m/s; ", step,
+                  marbles.ids().download()[place], x.x, x.y, x.z, v.x, v.y, v.z);
+    std::snprintf(why, sizeof why, "; dt %g s is %s the limit %g s of this stiffness in a dense packing",
+                  dt_s, dt_s > limit_s ? "over" : "within", limit_s);
+    throw course::Unstable(who + what + why);
+}
+
 //! [check_state]
 /// Nothing in this model makes energy: springs give back what they took, dashpots, friction and drag only
 /// take. So the energy at the start is a bound for ever. Leapfrog moves around the true energy by up to
 /// (omega dt)^2 / 4 of what is in the contacts: within the limit of the step at most all of it.
+///
+/// And a marble that moves by half a diameter in one step can pass another without a contact.
 /// @param start_J  energy of the first state
 /// @throws course::Unstable naming the step, the marble, its values, and whether dt is over the limit
 inline void check_state(const Marbles& marbles, const Summary& now, double start_J, int step, float dt_s) {
     const Material& material = marbles.material();
-    const double quantum_J =  // so that a single marble at rest on the floor may tremble
+    const double tremble_J =  // so that a single marble at rest on the floor may have rounding errors
         1e-6 * marbles.size() * material.mass_kg * 9.81 * material.diameter_m;
-    const double most_J = start_J + 0.02 * std::fabs(start_J) + now.elastic_J + quantum_J;
-    if (std::isfinite(now.highest_speed) && now.energy_J() <= most_J) return;
-    const float4 x = marbles.positions().download()[now.fastest],
-                 v = marbles.velocities().download()[now.fastest];
-    const float limit_s = time_step_limit_s(material);
-    char text[512];
-    std::snprintf(
-        text, sizeof text,
-        "step %d: energy %g J, more than the %g J of the start, which nothing here can do; marble %u "
-        "at (%g, %g, %g) m moves at (%g, %g, %g) m/s; dt %g s is %s the limit %g s of this stiffness "
-        "in a dense packing%s",
-        step, now.energy_J(), start_J, marbles.ids().download()[now.fastest], x.x, x.y, x.z, v.x, v.y, v.z,
-        dt_s, dt_s > limit_s ? "over" : "within", limit_s,
-        dt_s > limit_s ? ""
-                       : ": likely causes are marbles pressed far into each other, or faster "
-                         "than a tenth of a diameter per step");
-    throw course::Unstable(text);
+    const double most_J = start_J + 0.02 * std::fabs(start_J) + now.elastic_J + tremble_J;
+    char what[160];
+    if (!(now.highest_speed * dt_s <= 0.5f * material.diameter_m)) {
+        std::snprintf(what, sizeof what, "that is %g diameters per step: it can pass others unseen",
+                      now.highest_speed * dt_s / material.diameter_m);
+        stop(marbles, now.fastest, step, dt_s, what);
+    }
+    if (!(now.energy_J() <= most_J)) {
+        std::snprintf(what, sizeof what, "all energy together is %g J, more than the %g J of the start",
+                      now.energy_J(), start_J);
+        stop(marbles, now.fastest, step, dt_s, what);
+    }
 }
 //! [check_state]
 
