@@ -2,6 +2,8 @@
 /// What this chapter measures: the time of each method against the number of particles, and against crowding.
 #pragma once
 #include <algorithm>
+#include <cstdio>
+#include <ctime>
 #include <vector>
 
 #include "05_spatial_grid/crowding.cuh"
@@ -23,6 +25,20 @@ course::Timing time_on_device(const course::Study& study, std::uint32_t n, Work&
         .per(batch);
 }
 
+/// Processor time of one call, in ns per particle, median of five: all threads of the simulator together. It
+/// hardly depends on what else the machine does, as seconds by the clock do.
+template <class Work>
+double processor_ns(std::uint32_t n, Work&& work) {
+    std::vector<double> seconds;
+    for (int k = 0; k < 5; ++k) {
+        const std::clock_t before = std::clock();
+        work();
+        CUDA_CHECK(cudaDeviceSynchronize());
+        seconds.push_back(double(std::clock() - before) / CLOCKS_PER_SEC);
+    }
+    return 1e9 * course::timing_of(seconds).median_s / n;
+}
+
 //! [add_methods]
 /// Two rows of each method, its build (the bounds included, since particles move) and its query; brute force
 /// builds nothing. Error: particles whose number of neighbours is not brute force's.
@@ -41,10 +57,16 @@ inline void add_methods(course::Study& study, Cloud& cloud, double value) {
             study.add({method.name, value, double(n), wrong, query.per(double(asked) / n)});
             continue;
         }
-        const course::Timing build = time_on_device(study, n, [&] {
+        const auto find_and_build = [&] {
             find_bounds(cloud.position.data(), n);
             method.build();
-        });
+        };
+        const course::Timing build = time_on_device(study, n, find_and_build);
+        if (n > 1u << 14 && study.backend == "simulator") {
+            std::printf("%u particles, %s: build %.0f, query %.0f ns of processor time each\n", n,
+                        method.name.c_str(), processor_ns(n, find_and_build), processor_ns(n, method.query));
+            std::fflush(stdout);
+        }
         study.add({method.name + ": build", value, double(n), wrong, build});
         study.add({method.name + ": query", value, double(n), wrong, query});
     }
