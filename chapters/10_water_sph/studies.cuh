@@ -47,10 +47,10 @@ inline void declare_studies(course::Program& program) {
     program.study({"sound_speed", "How fine must water be for sound of a given length?",
                    "speed of sound: measured / c - 1", "spacings_in_wavelength"},
                   study_sound_speed);
-    program.study(
-        {"poiseuille", "How fine must water between two plates be?",
-         "velocity: largest difference at five times / fastest velocity", "spacings_between_plates"},
-        study_poiseuille);
+    program.study({"poiseuille", "How fine must water between two plates be?",
+                   "velocity: largest difference at five times / fastest velocity", "spacings_between_plates",
+                   course::StudyPlot::error_against_time, true},
+                  study_poiseuille);
     program.study({"taylor_green", "How much friction do particles add to the fluid's?",
                    "viscosity: that which slows the vortices / the fluid's - 1", "spacings_in_square",
                    course::StudyPlot::error_against_time, true},
