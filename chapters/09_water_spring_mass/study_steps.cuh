@@ -69,7 +69,7 @@ inline void study_bounce(course::Study& study) {
             const float dt_s = float(3.14159265 / 2000 / steps_each);
             const int steps = int(0.006f / dt_s);  // all have met and parted
             const course::Timing timing =
-                course::time_work(1, [&] {
+                course::time_work(3, [&] {
                     marbles = Marbles(pairs.material, pairs.box, pairs.position, pairs.velocity);
                     for (int step = 0; step < steps; ++step) marbles.step(dt_s);
                     CUDA_CHECK(cudaDeviceSynchronize());

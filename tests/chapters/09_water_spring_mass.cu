@@ -665,8 +665,10 @@ TEST_CASE("marbles are drawn, and no OpenGL object is left behind") {
         settings.drawing = k == 0 ? Drawing::points : Drawing::spheres;
         const int before = course::gl_count().made;
         {
-            MarblesView view(settings, start, 160, 90);
-            view.draw(start.marbles, first_view(settings.scene.tank).camera());
+            const interop::TankScene look = look_of(settings, start);
+            interop::TankView view(look, start.marbles.size(), 160, 90);
+            view.draw(start.marbles.position(), start.marbles.velocity(), start.marbles.size(),
+                      interop::first_view(look.tank).camera());
             const course::Image image = view.image();
             int blue = 0;
             for (std::size_t p = 0; p < image.rgb.size(); p += 3)
