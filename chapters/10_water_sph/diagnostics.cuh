@@ -57,9 +57,9 @@ inline __global__ void summary_kernel(Summary* chunks, const float4* position, c
 }
 //! [summary_kernel]
 
-/// Values by particle number, whatever order the water keeps them in.
-template <class T>
-std::vector<T> by_id(const Water& water, const course::DeviceBuffer<T>& buffer) {
+/// Values by particle number, whatever order the water keeps them in. AnyWater: Water or PbfWater.
+template <class AnyWater, class T>
+std::vector<T> by_id(const AnyWater& water, const course::DeviceBuffer<T>& buffer) {
     const std::vector<T> values = buffer.download();
     const std::vector<std::uint32_t> ids = water.ids().download();
     std::vector<T> sorted(values.size());
@@ -73,7 +73,8 @@ class Summarizer {
     explicit Summarizer(std::uint32_t max_particles)
         : chunks_(grid::blocks_for(max_particles, kSummaryChunk)) {}
 
-    Summary operator()(const Water& water) {
+    template <class AnyWater>
+    Summary operator()(const AnyWater& water) {
         const std::uint32_t count = grid::blocks_for(water.size(), kSummaryChunk);
         Summary total;
         if (count == 0) return total;

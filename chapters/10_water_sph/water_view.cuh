@@ -23,7 +23,8 @@ inline course::OrbitCamera first_view(const Box& tank) {
 /// Draws one body of water. Needs a current OpenGL context.
 class WaterView {
   public:
-    WaterView(const Settings& settings, const Start& start, int width_px, int height_px)
+    template <class AnyWater>
+    WaterView(const Settings& settings, const StartOf<AnyWater>& start, int width_px, int height_px)
         : position_(start.water.size()),
           velocity_(start.water.size()),
           radius_m_(0.55f * start.spacing_m),
@@ -31,7 +32,8 @@ class WaterView {
 
     //! [show]
     /// Copies positions and velocities into the OpenGL buffers, on the device, and draws them.
-    void draw(const Water& water, const course::Camera& camera) {
+    template <class AnyWater>
+    void draw(const AnyWater& water, const course::Camera& camera) {
         copy(position_, water.position());
         copy(velocity_, water.velocity());
         renderer_.draw(position_.gl_buffer(), &velocity_.gl_buffer(), water.size(), radius_m_, camera);
@@ -46,7 +48,8 @@ class WaterView {
         CUDA_CHECK(cudaMemcpy(to.map(), from, to.size() * sizeof(float4), cudaMemcpyDeviceToDevice));
         to.unmap();
     }
-    static interop::Look look(const Settings& settings, const Start& start) {
+    template <class AnyWater>
+    static interop::Look look(const Settings& settings, const StartOf<AnyWater>& start) {
         const Box& tank = settings.scene.tank;
         interop::Look look;
         look.drawing =
