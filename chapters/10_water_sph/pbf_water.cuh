@@ -100,10 +100,13 @@ class PbfWater {
     /// The largest step that this water should take now.
     float step_limit_s() const { return pbf_step_limit_s(fluid_, highest_speed_m_per_s_); }
     const PbfReport& report() const { return report_; }
-    /// Pressure of each particle in Pa, from the multipliers of the last step.
+    /// Pressure of each particle in Pa, as the last step has used it: the last change was found, but it moves
+    /// nobody before the next step.
     std::vector<float> pressures() const {
         std::vector<float> pressure = multiplier_.download();
-        for (float& p : pressure) p = last_dt_s_ > 0 ? p / (last_dt_s_ * last_dt_s_) : 0;
+        const std::vector<float> change = change_.download();
+        for (std::size_t i = 0; i < pressure.size(); ++i)
+            pressure[i] = last_dt_s_ > 0 ? (pressure[i] - change[i]) / (last_dt_s_ * last_dt_s_) : 0;
         return pressure;
     }
 

@@ -1,7 +1,7 @@
 # add_chapter(NN_topic [GL])
 #   program  chNN_topic     from chapters/NN_topic/main.cu or main.cpp
-#   tests    test_NN_topic  from tests/chapters/NN_topic.cu or .cpp and, if there, NN_topic_extremes.cu or .cpp;
-#                           one ctest per TEST_CASE
+#   tests    test_NN_topic  from tests/chapters/NN_topic.cu or .cpp and, if there, NN_topic_extremes.cu or .cpp and
+#                           NN_topic_incompressible.cu; one ctest per TEST_CASE
 #            test_NN_topic_counts  from tests/chapters/NN_topic_counts.cu, if it is there: the same, built so that the
 #                           simulator counts accesses to memory (course_target)
 # GL: needs OpenGL. Without it the chapter is left out, and the summary says which package mends that.
@@ -46,8 +46,9 @@ function(add_chapter chapter)
     course_find_source(test ${CMAKE_SOURCE_DIR}/tests/chapters/${chapter})
     if(test)
         course_find_source(extremes ${CMAKE_SOURCE_DIR}/tests/chapters/${chapter}_extremes)
+        course_find_source(incompressible ${CMAKE_SOURCE_DIR}/tests/chapters/${chapter}_incompressible)
         add_executable(test_${chapter})
-        course_target(test_${chapter} SOURCES ${test} ${extremes})
+        course_target(test_${chapter} SOURCES ${test} ${extremes} ${incompressible})
         target_link_libraries(test_${chapter} PRIVATE ${libraries} course_test_main)
         target_compile_definitions(test_${chapter} PRIVATE COURSE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}"
             COURSE_DATA_DIR="${CMAKE_SOURCE_DIR}/tests/data")
