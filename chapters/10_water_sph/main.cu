@@ -219,8 +219,12 @@ std::string broken_rule(const Start& start) {
     const std::string broken = broken_limit(start.water.fluid(), start.dt_s);
     return broken.empty() ? "" : broken + ": the run may end, but its numbers mean little";
 }
-std::string broken_rule(const PbfStart&) {
-    return "";  // it would be the speed, which nobody knows before the run; check_state watches it
+std::string broken_rule(const PbfStart& start) {
+    // Nobody knows the speed before the run; check_state watches it.
+    if (!(start.dt_s > time_step_limit(start.water.fluid()).viscosity_s)) return "";
+    return "dt is over the limit 0.0625 h^2 / nu, set by the viscosity: the run may end, but its numbers "
+           "mean "
+           "little";
 }
 
 /// The program with one of the two kinds of water.

@@ -35,7 +35,8 @@ inline void check_state(const PbfWater& water, const Summary& summary, int step,
         std::snprintf(text + length, sizeof text - length,
                       "moves at (%g, %g, %g) m/s, more than the support radius of %g m in a step of %g s; at "
                       "that speed a step of %g s would do",
-                      v.x, v.y, v.z, fluid.support_m, dt_s, pbf_step_limit_s(fluid, summary.highest_speed));
+                      v.x, v.y, v.z, fluid.support_m, dt_s,
+                      pbf_step_limit_s(fluid, water.choice().tolerance, summary.highest_speed));
     throw course::Unstable(text);
 }
 

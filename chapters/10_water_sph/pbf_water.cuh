@@ -20,13 +20,14 @@ struct PbfReport {
 
 //! [pbf_limit]
 /// Largest time step for water whose fastest particle has that speed. Sound sets no limit: there is none.
-/// Moving by more than 0.3 h brings particles together that have not seen each other coming; gravity alone
-/// must not press a whole layer into the next. Below that, both are a matter of price: a longer step needs
-/// more corrections.
-inline float pbf_step_limit_s(const Fluid& fluid, float highest_speed_m_per_s) {
+/// Moving by more than 0.3 h brings particles together that have not seen each other coming. What gravity
+/// does in a step, g dt^2, has to be undone by corrections: many when the step is long and the tolerance
+/// tight. Here both are in proportion, so that two or three corrections do; a longer step costs more than it
+/// saves.
+inline float pbf_step_limit_s(const Fluid& fluid, float tolerance, float highest_speed_m_per_s) {
     const TimeStepLimit limit = time_step_limit(fluid);
     const float advection_s = 0.3f * fluid.support_m / highest_speed_m_per_s;
-    return std::fmin(advection_s, std::fmin(0.24f * limit.force_s, limit.viscosity_s));
+    return std::fmin(advection_s, std::fmin(2.4f * std::sqrt(tolerance) * limit.force_s, limit.viscosity_s));
 }
 //! [pbf_limit]
 
@@ -98,7 +99,8 @@ class PbfWater {
     //! [pbf_step]
 
     /// The largest step that this water should take now.
-    float step_limit_s() const { return pbf_step_limit_s(fluid_, highest_speed_m_per_s_); }
+    float step_limit_s() const { return pbf_step_limit_s(fluid_, choice_.tolerance, highest_speed_m_per_s_); }
+    const PbfChoice& choice() const { return choice_; }
     const PbfReport& report() const { return report_; }
     /// Pressure of each particle in Pa, as the last step has used it: the last change was found, but it moves
     /// nobody before the next step.

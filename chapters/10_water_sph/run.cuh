@@ -58,8 +58,9 @@ inline PbfStart make_pbf_start(const Settings& settings) {
     const Fluid fluid = make_fluid(settings.scene, spacing_m, settings.choice);
     const float top_m =
         settings.scene.block_low_m.y + settings.scene.block_size_m.y - settings.scene.tank.low_m.y;
-    const float dt_s =
-        settings.dt_s > 0 ? settings.dt_s : pbf_step_limit_s(fluid, 2 * std::sqrt(9.81f * top_m));
+    const float dt_s = settings.dt_s > 0
+                           ? settings.dt_s
+                           : pbf_step_limit_s(fluid, settings.pbf.tolerance, 2 * std::sqrt(9.81f * top_m));
     return {PbfWater(fluid, settings.scene.tank, settings.pbf, position,
                      std::vector<float4>(settings.particles, make_float4(0, 0, 0, 0))),
             spacing_m, dt_s};

@@ -1,7 +1,7 @@
 // Exercise 10.4: water pushes and never pulls.
 //
-// Position based fluids correct the places of particles again and again, by a multiplier for each: its share of
-// pressure. A particle whose density is too high needs a larger one, at most as much as
+// Position based fluids correct the places of particles again and again, by a multiplier for each: its share
+// of pressure. A particle whose density is too high needs a larger one, at most as much as
 //
 //     (rho - rho0) / response,        response = -d rho / d multiplier, which is above 0
 //
@@ -18,8 +18,9 @@ struct Correction {
     float change;      // new - old: what particles are moved by now
 };
 
-// The next correction of a particle that has this multiplier by all corrections before. Its neighbours correct
-// themselves at the same time, and that helps it too: it takes kPbfRelaxation of what it would need alone.
+// The next correction of a particle that has this multiplier by all corrections before. Its neighbours
+// correct themselves at the same time, and that helps it too: it takes kPbfRelaxation of what it would need
+// alone.
 inline __host__ __device__ Correction corrected(float multiplier, float density, float rest_density,
                                                 float response) {
     // TODO(10.4): the sum of all changes may never be below 0. A single change may. About 4 lines.
