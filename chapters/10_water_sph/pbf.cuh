@@ -12,7 +12,7 @@
 
 namespace sph {
 
-/// How hard position based fluids try. Each has the value that the study `pressure` found to be good.
+/// How hard position based fluids try. Each has the value that trials found to be good.
 struct PbfChoice {
     float tolerance = 0.01f;   ///< of the compression, rho / rho0 - 1 where above 0, mean over all particles
     int max_corrections = 50;  ///< of a step; then the tolerance is missed, and the step says so

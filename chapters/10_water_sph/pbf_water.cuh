@@ -58,7 +58,8 @@ class PbfWater {
           id_(n_),
           other_id_(n_),
           chunks_(grid::blocks_for(n_, 256)) {
-        // Spacing from mass: the support in spacings, as the lattice's sum wants it.
+        // The support in spacings, which the lattice's sum wants, from the mass. Within the usual bounds,
+        // since nothing keeps anybody from masses that no lattice has.
         const double spacing_m = std::cbrt(double(fluid.mass_kg) / fluid.rest_density_kg_per_m3);
         const double support = std::fmin(fluid.support_m / spacing_m, 4.0);
         least_norm_ = 0.5f * spiky_gradient_norm(std::fmax(support, 1.5));

@@ -19,7 +19,7 @@ struct TimedRun {
     std::string method;
     double allowed;                               ///< compression that was asked for
     double particles;                             ///< how many
-    std::function<int(double until_s)> advance;   ///< takes steps up to that time: how many?
+    std::function<int(double until_s)> advance;   ///< takes steps up to that time: how many? -1: it can't
     std::function<std::vector<float>()> density;  ///< now
     std::function<bool()> is_water;
     double square_sum = 0, seconds = 0, steps = 0;
@@ -39,7 +39,7 @@ inline void run_in_turn(std::vector<TimedRun>& runs, double time_s, int looks) {
             run.seconds += taken.count();
             run.steps += steps;
             if (steps > 0) run.per_step_s.push_back(taken.count() / steps);
-            run.broken = !run.is_water();
+            run.broken = steps < 0 || !run.is_water();
             for (float rho : run.density()) {
                 const double above = std::fmax(rho / 1000.0 - 1, 0.0);
                 run.square_sum += above * above / run.particles / looks;
@@ -79,6 +79,8 @@ inline TimedRun timed_pbf_run(const std::string& scene, Settings settings, doubl
             int steps = 0;
             for (; *time_s < until_s; ++steps, *time_s += *dt_s) {
                 *dt_s = start->water.step_limit_s();
+                if (!(*dt_s > 1e-6f)) return -1;  // it has exploded: no water is that fast
+
                 start->water.step(*dt_s);
             }
             return steps;
