@@ -70,9 +70,9 @@ struct SummariesOfOne {
 };
 //! [Summing]
 
-/// Values by particle number, whatever order the water keeps them in.
-template <class T>
-std::vector<T> by_id(const Water& water, const course::DeviceBuffer<T>& buffer) {
+/// Values by particle number, whatever order the water keeps them in. AnyWater: Water or PbfWater.
+template <class AnyWater, class T>
+std::vector<T> by_id(const AnyWater& water, const course::DeviceBuffer<T>& buffer) {
     const std::vector<T> values = buffer.download();
     const std::vector<std::uint32_t> ids = water.ids().download();
     std::vector<T> sorted(values.size());
@@ -85,7 +85,8 @@ class Summarizer {
   public:
     explicit Summarizer(std::uint32_t max_particles) : reduce_(max_particles) {}
 
-    Summary operator()(const Water& water) {
+    template <class AnyWater>
+    Summary operator()(const AnyWater& water) {
         const Fluid& fluid = water.fluid();
         reduce_(SummariesOfOne{water.position(), water.velocity(), water.densities().data(), fluid.mass_kg,
                                fluid.gravity_m_per_s2.y, water.box().low_m.y},

@@ -20,8 +20,8 @@ constexpr int kStepsPerCheck =
 
 /// What this program can be asked for, beyond the options that all programs have.
 struct Choices {
-    std::string draw = "spheres", equation = "linear";
-    float stiffness = 1, viscosity = 1;
+    std::string draw = "spheres", equation = "linear", pressure = "state";
+    float stiffness = 1, viscosity = 1, tolerance = PbfChoice().tolerance;
     int frames = 0;
 };
 
@@ -33,6 +33,9 @@ Settings make_settings(const course::ProgramOptions& options, const Choices& cho
          "--draw must be spheres, points or none, not '" + choices.draw + "'");
     want(choices.equation == "linear" || choices.equation == "tait",
          "--equation must be linear or tait, not '" + choices.equation + "'");
+    want(choices.pressure == "state" || choices.pressure == "pbf",
+         "--pressure must be state or pbf, not '" + choices.pressure + "'");
+    want(choices.tolerance > 0 && choices.tolerance <= 1, "--tolerance must be above 0 and at most 1");
     want(choices.stiffness >= 0.01f && choices.stiffness <= 1e6f, "--stiffness must be from 0.01 to 1000000");
     want(choices.viscosity >= 0 && choices.viscosity <= 1e6f, "--viscosity must be from 0 to 1000000");
     want(choices.frames >= 0, "--frames must be 0 or more");
@@ -40,6 +43,8 @@ Settings make_settings(const course::ProgramOptions& options, const Choices& cho
     settings.scene = find_scene(all_scenes(), options.scene);
     settings.choice.stiffness = choices.stiffness;
     settings.choice.viscosity = choices.viscosity;
+    settings.pressure = choices.pressure == "state" ? Pressure::state : Pressure::pbf;
+    settings.pbf.tolerance = choices.tolerance;
     settings.state = choices.equation == "linear" ? EquationOfState::linear : EquationOfState::tait;
     settings.particles = options.particles;
     settings.dt_s = options.dt_s;
@@ -59,7 +64,8 @@ std::string file_number(int number) {
 /// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
 class Recorder {
   public:
-    Recorder(course::Program& program, const Settings& settings, const Start& start)
+    template <class AnyWater>
+    Recorder(course::Program& program, const Settings& settings, const StartOf<AnyWater>& start)
         : program_(program),
           camera_(interop::first_view(look_of(settings, start).tank).camera()),
           table_("The water's state",
@@ -73,7 +79,8 @@ class Recorder {
                               "; handover: " + view_->handover());
     }
 
-    void add(const Start& start, const Summary& now, int step) {
+    template <class AnyWater>
+    void add(const StartOf<AnyWater>& start, const Summary& now, int step) {
         table_.row({step, step * double(start.dt_s), now.front_m, now.kinetic_J,
                     now.kinetic_J + now.potential_J, now.density_sum / start.water.size(),
                     now.highest_density, now.highest_speed});
@@ -107,12 +114,27 @@ class Recorder {
     std::vector<std::pair<std::string, std::string>> captions_;
 };
 
-void run_headless(course::Program& program, const Settings& settings, Start& start) {
+/// What a step has to tell of itself, added up over a run. An equation of state has nothing to tell.
+struct Effort {
+    void add(const Water&) {}
+    void add(const PbfWater& water) {
+        corrections += water.report().corrections;
+        mean_sum += water.report().mean_compression;
+        highest = std::max(highest, double(water.report().highest_compression));
+        ++steps;
+    }
+    double corrections = 0, mean_sum = 0, highest = 0;
+    int steps = 0;
+};
+
+template <class AnyWater>
+void run_headless(course::Program& program, const Settings& settings, StartOf<AnyWater>& start) {
     const int steps = program.options.steps;
     Recorder recorder(program, settings, start);
     Summarizer summarize(start.water.size());
     course::Progress progress(settings.scene.name, steps);
     double seconds = 0;  // of the steps alone
+    Effort effort;
     int stills = 0;
     try {
         for (int step = 0; step <= steps; ++step) {
@@ -128,6 +150,7 @@ void run_headless(course::Program& program, const Settings& settings, Start& sta
             start.water.step(start.dt_s);
             CUDA_CHECK(cudaDeviceSynchronize());
             seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+            effort.add(start.water);
             progress.update(step + 1);
         }
     } catch (const course::Unstable&) {
@@ -141,13 +164,21 @@ void run_headless(course::Program& program, const Settings& settings, Start& sta
         cost.row({start.water.size(), steps, start.dt_s, 1e3 * seconds / steps,
                   1e-6 * steps * double(start.water.size()) / seconds});
     program.result().table(cost);
+    if (effort.steps > 0) {
+        course::Table table("Corrections", {"per step", "mean compression", "highest"});
+        table.row({effort.corrections / effort.steps, effort.mean_sum / effort.steps, effort.highest});
+        program.result().table(table);
+    }
     char hash[64];
     std::snprintf(hash, sizeof hash, "State hash: %016llx",
                   static_cast<unsigned long long>(state_hash(start.water)));
     program.result().note(hash);
 }
 
-void run_window(course::Program& program, const Choices& choices, const Settings& settings, Start& start) {
+/// make: the water at its start, made anew.
+template <class AnyWater, class Make>
+void run_window(course::Program& program, const Choices& choices, const Settings& settings,
+                StartOf<AnyWater>& start, Make make) {
     const course::ProgramOptions& options = program.options;
     const auto window =
         course::make_window(options.width, options.height, "Water by SPH: " + settings.scene.name);
@@ -166,7 +197,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
         if (events.pause) paused = !paused;
         if (events.step) paused = true;
         if (events.reset) {
-            start = make_start(settings);
+            start = make(settings);
             step = 0;
         }
         course::steer(orbit, events, options.height);
@@ -185,6 +216,39 @@ void run_window(course::Program& program, const Choices& choices, const Settings
     }
 }
 
+/// What makes the numbers of a run mean little, as a sentence; empty if nothing does.
+std::string broken_rule(const Start& start) {
+    const std::string broken = broken_limit(start.water.fluid(), start.dt_s);
+    return broken.empty() ? "" : broken + ": the run may end, but its numbers mean little";
+}
+std::string broken_rule(const PbfStart& start) {
+    // Nobody knows the speed before the run; check_state watches it.
+    if (!(start.dt_s > time_step_limit(start.water.fluid()).viscosity_s)) return "";
+    return "dt is over the limit 0.0625 h^2 / nu, set by the viscosity: the run may end, but its numbers "
+           "mean "
+           "little";
+}
+
+/// The program with one of the two kinds of water.
+template <class AnyWater>
+void run(course::Program& program, const Choices& choices, const Settings& settings,
+         StartOf<AnyWater> (*make)(const Settings&)) {
+    // Start on the host, state on the device, which on the simulator is the host's memory too.
+    const std::size_t each = std::max(Water::bytes_per_particle(true), PbfWater::bytes_per_particle());
+    course::require_memory(double(settings.particles) * (2 * sizeof(float4) + each));
+    StartOf<AnyWater> start = make(settings);
+    if (program.options.explain) {
+        std::printf("%s", explain(settings, start).c_str());
+        return;
+    }
+    program.result().device = course::device_name();
+    if (const std::string broken = broken_rule(start); !broken.empty()) program.result().note(broken);
+    if (program.options.window)
+        run_window(program, choices, settings, start, make);
+    else
+        run_headless(program, settings, start);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -197,6 +261,9 @@ int main(int argc, char** argv) {
     for (const Scene& scene : all_scenes()) program.scenes.push_back(scene.name);
     Choices choices;
     program.option("--draw", choices.draw, "spheres, points, or none (numbers alone, no OpenGL)");
+    program.option("--pressure", choices.pressure,
+                   "from an equation of state (state), or by position based fluids (pbf)");
+    program.option("--tolerance", choices.tolerance, "with pbf: mean compression that a step may leave");
     program.option("--equation", choices.equation, "of state: linear or tait");
     program.option("--stiffness", choices.stiffness, "factor on the scene's sound speed");
     program.option("--viscosity", choices.viscosity,
@@ -206,19 +273,9 @@ int main(int argc, char** argv) {
     declare_studies(program);
     return program.run(argc, argv, [&] {
         const Settings settings = make_settings(program.options, choices);
-        // Start on the host, state on the device, which on the simulator is the host's memory too.
-        course::require_memory(double(settings.particles) * (2 * sizeof(float4) + Water::bytes_per_particle(true)));
-        Start start = make_start(settings);
-        if (program.options.explain) {
-            std::printf("%s", explain(settings, start).c_str());
-            return;
-        }
-        program.result().device = course::device_name();
-        if (const std::string broken = broken_limit(start.water.fluid(), start.dt_s); !broken.empty())
-            program.result().note(broken + ": the run may end, but its numbers mean little");
-        if (program.options.window)
-            run_window(program, choices, settings, start);
+        if (settings.pressure == Pressure::pbf)
+            run(program, choices, settings, make_pbf_start);
         else
-            run_headless(program, settings, start);
+            run(program, choices, settings, make_start);
     });
 }

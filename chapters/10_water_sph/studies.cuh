@@ -4,6 +4,7 @@
 #include "10_water_sph/stability_maps.cuh"
 #include "10_water_sph/study_flows.cuh"
 #include "10_water_sph/study_front.cuh"
+#include "10_water_sph/study_pbf.cuh"
 #include "10_water_sph/study_precision.cuh"
 #include "10_water_sph/study_speed.cuh"
 #include "10_water_sph/study_stiffness.cuh"
@@ -62,12 +63,21 @@ inline void declare_studies(course::Program& program) {
                    "acceleration: rms difference from the same sums in double, relative", "n",
                    course::StudyPlot::time_against_value, true},
                   study_speed);
+    program.study({"pressure", "At equal compression, who is cheaper: an equation of state or PBF?",
+                   "compression: rms of max(rho / rho0 - 1, 0)", "compression_allowed",
+                   course::StudyPlot::error_against_time, true},
+                  study_pressure);
     program.stability({"sound", "How large may a step be before sound explodes?", kStableWhen,
                        "leapfrog on a cubic lattice: 0.985 h / c", "sound speed c (m/s)"},
                       map_sound);
     program.stability({"viscosity", "How large may a step be before friction explodes?", kStableWhen,
                        "explicit steps on a cubic lattice: 0.1277 h^2 / nu", "viscosity nu (m^2/s)"},
                       map_viscosity);
+    program.stability({"corrections", "How large may a step of position based fluids be?",
+                       "dam break: no particle crosses its support in a step or is pressed to twice the rest "
+                       "density, and the energy of motion and height stays below that of the start",
+                       "advection: 0.4 h / (2 sqrt(g H))", "tolerance of the mean compression"},
+                      map_corrections);
 }
 
 }  // namespace sph

@@ -6,7 +6,8 @@
 
 namespace sph {
 
-inline interop::TankScene look_of(const Settings& settings, const Start& start) {
+template <class AnyWater>
+interop::TankScene look_of(const Settings& settings, const StartOf<AnyWater>& start) {
     const Box& tank = settings.scene.tank;
     interop::TankScene scene;
     scene.tank = {{tank.low_m.x, tank.low_m.y, tank.low_m.z}, {tank.high_m.x, tank.high_m.y, tank.high_m.z}};

@@ -1,0 +1,242 @@
+/// @file
+/// Position based fluids: no equation of state. Where a step would press particles together, pressures are
+/// looked for that keep them apart: Macklin and Müller, "Position Based Fluids" (ACM TOG 32(4), 2013), with
+/// the accumulated multipliers of Macklin, Müller and Chentanez, "XPBD" (MIG 2016).
+#pragma once
+#include <cuda_runtime.h>
+
+#include <cstdint>
+#include <glm/geometric.hpp>
+
+#include "10_water_sph/sph.cuh"
+
+namespace sph {
+
+/// How hard position based fluids try. Each has the value that trials found to be good.
+struct PbfChoice {
+    float tolerance = 0.01f;   ///< of the compression, rho / rho0 - 1 where above 0, mean over all particles
+    int max_corrections = 50;  ///< of a step; then the tolerance is missed, and the step says so
+    float kept = 0.7f;         ///< part of the last step's pressure that the next step starts from
+};
+
+/// Part of Newton's step that a correction takes: each particle corrects as if its neighbours stood still,
+/// and they don't. 1 shakes, 0.5 holds.
+constexpr float kPbfRelaxation = 0.5f;
+
+//! [spiky_gradient_norm]
+/// Sum over the neighbours in a cubic lattice of (h^4 dW/dr)^2, W spiky. A particle at the surface has fewer
+/// neighbours and a smaller sum, which would make its corrections larger than those of the water it rests
+/// on; half of the lattice's sum is the least that is used.
+inline float spiky_gradient_norm(double support_in_spacings) {
+    const int reach = int(support_in_spacings);
+    double sum = 0;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = -reach; y <= reach; ++y)
+            for (int z = -reach; z <= reach; ++z) {
+                const double slope = spiky_slope(std::sqrt(x * x + y * y + z * z) / support_in_spacings);
+                if (x != 0 || y != 0 || z != 0) sum += slope * slope;
+            }
+    return float(sum);
+}
+//! [spiky_gradient_norm]
+
+/// Keeps a point in the box; the velocity loses its component into the wall that stopped it.
+inline __host__ __device__ void stop_at_walls(const Box& box, glm::vec3& x, glm::vec3& v) {
+    const glm::vec3 low(box.low_m.x, box.low_m.y, box.low_m.z),
+        high(box.high_m.x, box.high_m.y, box.high_m.z);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (x[axis] < low[axis]) {
+            x[axis] = low[axis];
+            v[axis] = 0;
+        }
+        if (x[axis] > high[axis]) {
+            x[axis] = high[axis];
+            v[axis] = 0;
+        }
+    }
+}
+
+//! [predict_kernel]
+/// One thread per particle: where would it go by its velocity, gravity, viscosity, and the part `kept` of the
+/// last step's pressures? gravity_dt_s: the time that accelerations act, from the middle of the last step to
+/// the middle of this one.
+template <bool kViscous>
+__global__ void predict_kernel(float4* next_position, float4* next_velocity, const float4* position,
+                               const float4* velocity, const float* multiplier, float kept, float dt_s,
+                               float gravity_dt_s, grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid,
+                               Box box, std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    glm::vec3 x = grid::xyz(position[i]), v = grid::xyz(velocity[i]);
+    const float h = fluid.support_m, per_h = 1.0f / h, own = multiplier[i];
+    glm::vec3 pressure(0), viscosity(0);
+    if (grid::is_finite(x))  // else it sits in the limbo; the check of the state will report it
+        for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+            const glm::vec3 image_v = sign * v;
+            grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+                const std::uint32_t first = ranges.cell_first[first_cell];
+                const std::uint32_t count = ranges.cell_last[last_cell] - first;
+                const float4 *x_row = position + first, *v_row = velocity + first;
+                const float* multiplier_row = multiplier + first;
+                float px = 0, py = 0, pz = 0, vx = 0, vy = 0, vz = 0;
+#pragma omp simd reduction(+ : px, py, pz, vx, vy, vz)
+                for (std::uint32_t k = 0; k < count; ++k) {
+                    const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y,
+                                dz = image.z - x_row[k].z;
+                    const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
+                    const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
+                    const float push = (own + multiplier_row[k]) * spiky_slope(q) * per_r;
+                    px += push * dx;
+                    py += push * dy;
+                    pz += push * dz;
+                    if constexpr (kViscous) {
+                        const float drag = viscosity_laplacian(q);
+                        vx += drag * (v_row[k].x - image_v.x);
+                        vy += drag * (v_row[k].y - image_v.y);
+                        vz += drag * (v_row[k].z - image_v.z);
+                    }
+                }
+                pressure += sign * glm::vec3(px, py, pz);
+                viscosity += sign * glm::vec3(vx, vy, vz);
+            });
+        });
+    const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
+    const float per_h4 = per_h * per_h * per_h * per_h;
+    const float3 g = fluid.gravity_m_per_s2;
+    v += gravity_dt_s * glm::vec3(g.x, g.y, g.z);
+    if constexpr (kViscous)
+        v += gravity_dt_s * fluid.viscosity_m2_per_s * (m / rho0) * per_h4 * per_h * viscosity;
+    v += kept * m / (rho0 * rho0) * per_h4 / dt_s * pressure;
+    x += dt_s * v;
+    stop_at_walls(box, x, v);
+    next_position[i] = make_float4(x.x, x.y, x.z, 0.0f);
+    next_velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
+}
+//! [predict_kernel]
+
+//! [constraint_kernel]
+/// One thread per particle, at the places where the particles would go: density there, and by how much this
+/// particle's multiplier has to change for the density to come to rest. Neighbours are looked for in the
+/// cells of the step's start: one that has come from farther is missed until the next step.
+inline __global__ void constraint_kernel(float* density, float* multiplier, float* change, float kept,
+                                         const float4* position, float least_norm, grid::CellRanges ranges,
+                                         grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    const glm::vec3 x = grid::xyz(position[i]);
+    if (!grid::is_finite(x)) {
+        density[i] = x.x - x.x;
+        multiplier[i] = change[i] = 0;
+        return;
+    }
+    const float h = fluid.support_m, per_h = 1.0f / h;
+    float sum = 0, squares = 0;  // of h^3 W; of (h^4 grad W)^2
+    glm::vec3 gradient(0);
+    for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+        grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+            const std::uint32_t first = ranges.cell_first[first_cell];
+            const std::uint32_t count = ranges.cell_last[last_cell] - first;
+            const float4* x_row = position + first;
+            float row = 0, gx = 0, gy = 0, gz = 0, gg = 0;
+#pragma omp simd reduction(+ : row, gx, gy, gz, gg)
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
+                const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
+                const float slope = r > 0.0f ? spiky_slope(q) : 0.0f;
+                const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
+                row += poly6(q * q);
+                gx += slope * per_r * dx;
+                gy += slope * per_r * dy;
+                gz += slope * per_r * dz;
+                gg += slope * slope;
+            }
+            sum += row;
+            squares += gg;
+            gradient += sign * glm::vec3(gx, gy, gz);
+        });
+    });
+    const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
+    const float per_h4 = per_h * per_h * per_h * per_h;
+    const float rho = m * sum * per_h * per_h * per_h;
+    const float norm = fmaxf(least_norm, glm::dot(gradient, gradient) + squares);
+    const float response = m / rho0 * per_h4 * (m / rho0 * per_h4) * norm;  // d rho / d multiplier
+    // Water pushes and never pulls: what is taken back is at most what was given.
+    const float start = kept * multiplier[i];
+    change[i] = fmaxf(-start, kPbfRelaxation * (rho - rho0) / response);
+    multiplier[i] = start + change[i];
+    density[i] = rho;
+}
+//! [constraint_kernel]
+
+//! [shift_kernel]
+/// One thread per particle: moves it by the changes of the multipliers, its own and its neighbours'. The pair
+/// terms are those of force_kernel, as symmetric, so momentum stays. per_dt_per_s: 1 / dt, and 0 when places
+/// are to be put right without giving anybody velocity.
+inline __global__ void shift_kernel(float4* next_position, float4* velocity, const float4* position,
+                                    const float* change, float per_dt_per_s, grid::CellRanges ranges,
+                                    grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= n) return;
+    glm::vec3 x = grid::xyz(position[i]), v = grid::xyz(velocity[i]);
+    const float h = fluid.support_m, per_h = 1.0f / h, own = change[i];
+    glm::vec3 push_sum(0);
+    if (grid::is_finite(x))
+        for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+            grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+                const std::uint32_t first = ranges.cell_first[first_cell];
+                const std::uint32_t count = ranges.cell_last[last_cell] - first;
+                const float4* x_row = position + first;
+                const float* change_row = change + first;
+                float px = 0, py = 0, pz = 0;
+#pragma omp simd reduction(+ : px, py, pz)
+                for (std::uint32_t k = 0; k < count; ++k) {
+                    const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y,
+                                dz = image.z - x_row[k].z;
+                    const float r = sqrtf(dx * dx + dy * dy + dz * dz);
+                    const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
+                    const float push = (own + change_row[k]) * spiky_slope(r * per_h) * per_r;
+                    px += push * dx;
+                    py += push * dy;
+                    pz += push * dz;
+                }
+                push_sum += sign * glm::vec3(px, py, pz);
+            });
+        });
+    const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
+    const glm::vec3 shift = m / (rho0 * rho0) * per_h * per_h * per_h * per_h * push_sum;
+    x += shift;
+    v += per_dt_per_s * shift;
+    stop_at_walls(box, x, v);
+    next_position[i] = make_float4(x.x, x.y, x.z, 0.0f);
+    velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
+}
+//! [shift_kernel]
+
+/// What a step has to know of all particles: sums over a chunk of them, or over all.
+struct PbfSummary {
+    double compression_sum = 0;  ///< of rho / rho0 - 1 where above 0
+    float highest_compression = 0;
+    float highest_speed_squared = 0;
+};
+
+//! [pbf_summary_kernel]
+/// One thread per chunk of 256 particles; sums in double and in a fixed order, so that every run takes the
+/// same number of corrections.
+inline __global__ void pbf_summary_kernel(PbfSummary* chunks, const float* density, const float4* velocity,
+                                          float rest_density_kg_per_m3, std::uint32_t n) {
+    const std::uint32_t chunk = blockIdx.x * blockDim.x + threadIdx.x;
+    const std::uint32_t first = chunk * 256;
+    if (first >= n) return;
+    PbfSummary sum;
+    for (std::uint32_t i = first; i < min(n, first + 256); ++i) {
+        const float compression = fmaxf(density[i] / rest_density_kg_per_m3 - 1, 0.0f);
+        const float4 v = velocity[i];
+        sum.compression_sum += compression;
+        sum.highest_compression = fmaxf(sum.highest_compression, compression);
+        sum.highest_speed_squared = fmaxf(sum.highest_speed_squared, v.x * v.x + v.y * v.y + v.z * v.z);
+    }
+    chunks[chunk] = sum;
+}
+//! [pbf_summary_kernel]
+
+}  // namespace sph
