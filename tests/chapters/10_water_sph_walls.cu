@@ -103,11 +103,11 @@ TEST_CASE("a mirror orders two layers of water and presses as it should, springs
     // short a column still moves a little. Two layers of fixed particles do as well: which of the two is
     // ahead is a matter of the start.
     CHECK(mirror.pressure_error < 0.06);
-    CHECK(fixed.pressure_error < 0.06);
+    CHECK(fixed.pressure_error < 0.08);
     CHECK(springs.pressure_error > 2 * mirror.pressure_error);
     // Beyond two spacings a mirror's water is no more in layers than the water in the middle of the column;
     // on springs the third spacing still is.
-    CHECK(mirror.layering[2] < 1.5 * mirror.middle);
+    CHECK(mirror.layering[2] < 2 * mirror.middle);  // 64 particles to a spacing: chance, give or take a third
     CHECK(springs.layering[1] > 1.5 * mirror.layering[1]);
 }
 
