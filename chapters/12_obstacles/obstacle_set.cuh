@@ -66,9 +66,12 @@ inline void check(const Obstacle& obstacle, const Setting& setting) {
     const double fastest = path.fastest_m_per_s();
     want(std::isfinite(fastest) && std::isfinite(glm::length(path.start_m)),
          "an obstacle's path must be finite, not %g", fastest);
-    for (const Leg& leg : path.legs)
+    for (const Leg& leg : path.legs) {
         want(leg.duration_s >= 0 && std::isfinite(leg.duration_s),
              "a leg of a path must last 0 s or more, not %g s", leg.duration_s);
+        const double a = glm::length(leg.acceleration_m_per_s2);
+        want(std::isfinite(a), "an obstacle's acceleration must be finite, not %g m/s^2", a);
+    }
     if (path.repeats) {
         const double jump = glm::length(path.after_legs().velocity_m_per_s - path.start_velocity_m_per_s);
         want(jump <= 1e-9 * (1 + fastest),
