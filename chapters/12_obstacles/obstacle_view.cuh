@@ -10,8 +10,8 @@ namespace obstacles {
 /// From higher up than a tank without obstacles: what the water does behind them is to be seen.
 inline course::OrbitCamera obstacle_view(const interop::Box& tank) {
     course::OrbitCamera orbit = interop::first_view(tank);
-    orbit.target_m.y = tank.low_m.y + 0.3f * (tank.high_m.y - tank.low_m.y);
-    orbit.distance_m = 2.1f * tank.half_diagonal_m();
+    orbit.target_m.y = tank.low_m.y + 0.26f * (tank.high_m.y - tank.low_m.y);
+    orbit.distance_m = 2.35f * tank.half_diagonal_m();
     orbit.yaw_rad = 0.72f;
     orbit.pitch_rad = 0.46f;
     return orbit;
