@@ -165,18 +165,18 @@ struct Impulse {
     double x, y, z;  ///< kg m/s
 };
 
-//! [contact_kernel]
-/// One thread per particle. Nobody looks at another particle.
-/// @tparam kTwoWay  obstacles feel it: then `impulse` gets n elements for each obstacle
-/// @param hits      for each obstacle, how many particles hit it in this step
-/// @param weight    mass of a particle / mass of the obstacle; 0 for one that does not feel it
+/// What the pass needs of obstacles that feel the particles.
 struct TwoWay {
-    Impulse* impulse;
-    const std::uint32_t* hits[kMaxObstacles];
-    float weight[kMaxObstacles];
-    double mass_kg;  ///< of a particle
+    Impulse* impulse;                          ///< n elements for each obstacle
+    const std::uint32_t* hits[kMaxObstacles];  ///< how many particles hit it in this step
+    float weight[kMaxObstacles];  ///< mass of a particle / mass of the obstacle; 0: too heavy to feel it
+    double mass_kg;               ///< of a particle
 };
 
+//! [contact_kernel]
+/// One thread per particle. Nobody looks at another particle.
+/// @tparam Clock    how long each has moved
+/// @tparam kTwoWay  obstacles feel it
 template <class Clock, bool kTwoWay>
 __global__ void contact_kernel(float4* position, float4* velocity, Obstacles all, Clock clock, TwoWay two_way,
                                std::uint32_t n) {
