@@ -1,7 +1,7 @@
 // Exercise 12.2: a ball that spins.
 //
-// The chapter's free obstacles do not turn. A rough ball does: where a particle touches it, its surface moves with
-// the ball *and* with its spin, and the friction that slows the particle makes the ball turn.
+// The chapter's free obstacles do not turn. A rough ball does: where a particle touches it, its surface moves
+// with the ball *and* with its spin, and the friction that slows the particle makes the ball turn.
 #pragma once
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -30,12 +30,12 @@ inline glm::vec3 surface_velocity(const SpinningBall& ball, glm::vec3 x) {
     return glm::vec3(course::kTodo);
 }
 
-// A particle at x, on the ball's surface, meets it. Changes the particle's velocity v and the ball's velocity and
-// spin, so that neither momentum nor angular momentum gets lost.
+// A particle at x, on the ball's surface, meets it. Changes the particle's velocity v and the ball's velocity
+// and spin, so that neither momentum nor angular momentum gets lost.
 inline void spinning_bounce(SpinningBall& ball, float particle_kg, glm::vec3 x, glm::vec3& v) {
-    // TODO(12.2): bounce() does the particle, if you give it the surface's velocity, the normal, and the share that
-    // a ball of this mass leaves: M / (M + m). What the particle loses of its momentum the ball gets, at x: it
-    // moves the ball, and turns it about its middle. About 6 lines.
+    // TODO(12.2): bounce() does the particle, if you give it the surface's velocity, the normal, and the
+    // share that a ball of this mass leaves: M / (M + m). What the particle loses of its momentum the ball
+    // gets, at x: it moves the ball, and turns it about its middle. About 6 lines.
     (void)ball, (void)particle_kg, (void)x;
     v = glm::vec3(course::kTodo);
 }

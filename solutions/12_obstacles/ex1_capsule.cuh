@@ -1,7 +1,7 @@
 // Exercise 12.1: a third shape.
 //
-// A capsule is everything within a radius of a line segment: a stick with round ends. Once its signed distance
-// and its way out are known, everything else in the chapter would work with it, too.
+// A capsule is everything within a radius of a line segment: a stick with round ends. Once its signed
+// distance and its way out are known, everything else in the chapter would work with it, too.
 #pragma once
 #include <cuda_runtime.h>
 
@@ -20,8 +20,8 @@ struct Capsule {
 
 // The point of the segment that is nearest to x.
 inline __host__ __device__ glm::vec3 nearest_of_segment(const Capsule& capsule, glm::vec3 x) {
-    // TODO(12.1): how far along the segment, as a part of it? The nearest point of a segment may be an end of it,
-    // and a segment may have no length. About 4 lines.
+    // TODO(12.1): how far along the segment, as a part of it? The nearest point of a segment may be an end of
+    // it, and a segment may have no length. About 4 lines.
     // <solution>
     const glm::vec3 along = capsule.to_m - capsule.from_m;
     const float length2 = glm::dot(along, along);
@@ -44,8 +44,8 @@ inline __host__ __device__ float signed_distance(const Capsule& capsule, glm::ve
     // </solution>
 }
 
-// The way out at x, of length 1. On the segment itself all ways are as short: then it is up, unless the segment
-// leads there (its direction's y is above 0.9 in size); then it is along x.
+// The way out at x, of length 1. On the segment itself all ways are as short: then it is up, unless the
+// segment leads there (its direction's y is above 0.9 in size); then it is along x.
 inline __host__ __device__ glm::vec3 outward(const Capsule& capsule, glm::vec3 x) {
     // TODO(12.1): about 6 lines.
     // <solution>
