@@ -8,6 +8,7 @@
 #include "09_water_spring_mass/contact.cuh"
 #include "09_water_spring_mass/neighbour_list.cuh"
 #include "common/device_buffer.h"
+#include "common/run_pass.h"
 
 namespace spring_mass {
 
@@ -113,11 +114,17 @@ class Marbles {
 
     //! [step]
     /// One leapfrog step (kick, drift, kick).
-    void step(float dt_s) {
+    /// @param run_pass  runs the passes, told their names: see course::RunPass
+    template <class Run = course::RunPass>
+    void step(float dt_s, Run run_pass = {}) {
         if (n_ == 0) return;
-        launch_kick_drift(dt_s);
-        if (list_is_outdated()) make_list();
-        launch_contacts(dt_s);
+        bool outdated = false;
+        run_pass("kick and drift", [&] {
+            launch_kick_drift(dt_s);
+            outdated = list_is_outdated();
+        });
+        if (outdated) run_pass("list", [&] { make_list(); });
+        run_pass("contacts", [&] { launch_contacts(dt_s); });
     }
     //! [step]
 

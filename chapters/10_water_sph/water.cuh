@@ -9,6 +9,7 @@
 #include "10_water_sph/check_input.h"
 #include "10_water_sph/sph.cuh"
 #include "common/device_buffer.h"
+#include "common/run_pass.h"
 
 namespace sph {
 
@@ -53,14 +54,6 @@ struct NoGuest {
     void after_density(WaterArrays) {}
 };
 
-/// Runs a pass of a step. Whoever wants to know what each of them takes brings another one, with a clock.
-struct RunPass {
-    template <class Pass>
-    void operator()(const char* /*name*/, Pass pass) const {
-        pass();
-    }
-};
-
 /// State of n particles on the device. Move-only.
 class Water {
   public:
@@ -89,14 +82,14 @@ class Water {
         for (std::uint32_t i = 0; i < n_; ++i) ids[i] = i;
         id_.upload(ids);
         NoGuest nobody;
-        compute_acceleration(nobody, RunPass());
+        compute_acceleration(nobody, course::RunPass());
     }
 
     //! [step]
     /// One leapfrog step (kick, drift, kick). Waits for nothing: errors of the kernels show at the next copy.
     /// @param guest     what else is in the tank: see NoGuest
-    /// @param run_pass  runs the passes, told their names: see RunPass
-    template <class Guest = NoGuest, class Run = RunPass>
+    /// @param run_pass  runs the passes, told their names: see course::RunPass
+    template <class Guest = NoGuest, class Run = course::RunPass>
     void step(float dt_s, Guest&& guest = {}, Run run_pass = {}) {
         if (n_ == 0) return;
         run_pass("kick and drift", [&] {
