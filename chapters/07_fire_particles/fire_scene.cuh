@@ -264,7 +264,7 @@ inline FireScene wind(std::uint32_t particles) {
     scene.fire.wind.gust_s = 1.7f;
     scene.fire.wind.updraft_m_per_s = 1.2f;
     scene.fire.kind[0].life_s = 0.62f;
-    scene.fire.kind[0].emitter = {Emitter::line, {0, 0.10f, 0}, {1, 0, 0}, 0.35f, 9, 0.04f};
+    scene.fire.kind[0].emitter = {Emitter::line, {0, 0.10f, 0}, {1, 0, 0}, 0.35f, 9, 0.055f};
     scene.stage.rods = {{{-0.6f, 0.06f, 0}, {0.6f, 0.06f, 0.02f}, 0.06f, Rod::wood, 0.9f}};
     scene.fire.kind[1].emitter = {Emitter::disc, {0.30f, 0.34f, 0}, {0, 1, 0}, 0.13f};
     scene.lights[0].position_m.x = 0.1f, scene.lights[1].position_m = {0.35f, 0.4f, 0};

@@ -94,10 +94,15 @@ __host__ __device__ inline glm::vec3 birthplace(const Emitter& emitter, float u,
         const float scaled = u * float(emitter.roots), root = std::floor(scaled);
         const float part = (root + 0.5f) / float(emitter.roots);
         edge = std::sqrt(scaled - root);
-        const glm::vec3 from_root =
-            emitter.root_m * edge * (std::cos(kTurn * v) * x + std::sin(kTurn * v) * y);
-        if (emitter.shape == Emitter::line)
-            return emitter.centre_m + emitter.size_m * (2 * part - 1) * emitter.axis + from_root;
+        const float cosine = std::cos(kTurn * v), sine = std::sin(kTurn * v);
+        if (emitter.shape == Emitter::line) {
+            // Steps of the golden section, a turn of 1 each: no two gaps next to each other are alike, so
+            // that the flames don't stand like the teeth of a comb.
+            const float along = 2 * (0.618034f * root - std::floor(0.618034f * root)) - 1;
+            return emitter.centre_m + emitter.size_m * along * emitter.axis +
+                   emitter.root_m * edge * (cosine * emitter.axis + sine * x);
+        }
+        const glm::vec3 from_root = emitter.root_m * edge * (cosine * x + sine * y);
         // Like the seeds of a sunflower: turned by the golden angle each, they fill a disc evenly.
         const float away = emitter.size_m * std::sqrt(part), angle = 2.3999632f * root;
         return emitter.centre_m + away * (std::cos(angle) * x + std::sin(angle) * y) + from_root;

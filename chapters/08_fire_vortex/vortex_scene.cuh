@@ -177,7 +177,7 @@ inline VortexScene wind(std::uint32_t particles) {
     f.fire.wind.gust = 0.35f;
     f.fire.wind.gust_s = 1.7f;
     fire::ParticleKind& flame = f.fire.kind[0];
-    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f, 9, 0.04f};
+    flame.emitter = {fire::Emitter::line, {-0.1f, 0.11f, 0}, {1, 0, 0}, 0.35f, 9, 0.055f};
     scene.model.reach_m = 2.5f;
     stir(scene.model, flame.emitter, 4000, 0.6f, 13, 1.1f);
     f.fire.kind[1].emitter = {fire::Emitter::disc, {0.22f, 0.33f, 0}, {0, 1, 0}, 0.20f};
