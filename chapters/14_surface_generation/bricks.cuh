@@ -241,15 +241,16 @@ class Bricks {
     const course::DeviceBuffer<int4>& corners() const { return corner_; }
     const Lattice& lattice() const { return lattice_; }
     std::uint32_t count() const { return bricks_.count(); }
+    std::uint32_t region_count() const {  ///< that the lattice could have
+        const glm::ivec3 r = lattice_.regions();
+        return std::uint32_t(r.x) * r.y * r.z;
+    }
+    std::uint32_t regions() const { return regions_.count(); }  ///< that exist
     std::size_t bytes() const {
         return regions_.bytes() + bricks_.bytes() + corner_.bytes() + around_.bytes();
     }
 
   private:
-    std::uint32_t region_count() const {
-        const glm::ivec3 r = lattice_.regions();
-        return std::uint32_t(r.x) * r.y * r.z;
-    }
     void finish() {
         bricks_.finish();
         make_room(corner_, count());

@@ -97,7 +97,7 @@ struct RowWork {
 
 //! [count]
 /// One thread per crossed row: its edges with a vertex, and how many vertices and triangles it makes.
-inline __global__ void count_kernel(RowWork* work, std::uint32_t* vertices, std::uint32_t* triangles,
+inline __global__ void count_rows_kernel(RowWork* work, std::uint32_t* vertices, std::uint32_t* triangles,
                                     const std::uint32_t* crossed_rows, const std::uint8_t* inside,
                                     const std::uint32_t* around, const CaseTable* table, std::uint32_t n) {
     const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
@@ -243,7 +243,7 @@ class MarchingCubes {
         make_room(work_, crossed_count_);
         first_vertex_.resize(crossed_count_);
         first_triangle_.resize(crossed_count_);
-        count_kernel<<<blocks_for(crossed_count_, kThreads), kThreads>>>(
+        count_rows_kernel<<<blocks_for(crossed_count_, kThreads), kThreads>>>(
             work_.data(), first_vertex_.data(), first_triangle_.data(), crossed_.list(), inside_.data(),
             bricks.around, table_.data(), crossed_count_);
         CUDA_CHECK(cudaGetLastError());
@@ -270,6 +270,8 @@ class MarchingCubes {
         CUDA_CHECK(cudaGetLastError());
     }
 
+    /// Rows of the bricks that the surface passes, out of all that were looked at.
+    std::uint32_t crossed_rows() const { return crossed_count_; }
     std::size_t bytes() const {
         return table_.bytes() + inside_.bytes() + crossed_.bytes() + work_.bytes() + first_vertex_.bytes() +
                first_triangle_.bytes();
