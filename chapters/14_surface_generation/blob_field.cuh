@@ -81,14 +81,14 @@ class Blobs {
     void fill(float* field, const Bricks& bricks) const {
         switch (kind_) {
             case FieldKind::colour:
-                field_kernel<FieldKind::colour><<<bricks.count(), kBrickRows>>>(
-                    field, bricks.view().corner, blob_.data(), nullptr, sort_.ranges(), sort_.cells(),
-                    bricks.lattice(), field_);
+                field_kernel<FieldKind::colour>
+                    <<<bricks.count(), kBrickRows>>>(field, bricks.view().corner, blob_.data(), nullptr,
+                                                     sort_.ranges(), sort_.cells(), bricks.lattice(), field_);
                 break;
             case FieldKind::zhu_bridson:
-                field_kernel<FieldKind::zhu_bridson><<<bricks.count(), kBrickRows>>>(
-                    field, bricks.view().corner, blob_.data(), nullptr, sort_.ranges(), sort_.cells(),
-                    bricks.lattice(), field_);
+                field_kernel<FieldKind::zhu_bridson>
+                    <<<bricks.count(), kBrickRows>>>(field, bricks.view().corner, blob_.data(), nullptr,
+                                                     sort_.ranges(), sort_.cells(), bricks.lattice(), field_);
                 break;
             case FieldKind::anisotropic:
                 field_kernel<FieldKind::anisotropic><<<bricks.count(), kBrickRows>>>(
@@ -99,12 +99,17 @@ class Blobs {
         CUDA_CHECK(cudaGetLastError());
     }
 
-    const CellGrid& cells() const { return sort_.cells(); }                  ///< of the blobs
-    const CellGrid& neighbour_cells() const { return neighbour_cells_; }  ///< of the particles, anisotropic only
+    const CellGrid& cells() const { return sort_.cells(); }  ///< of the blobs
+    const CellGrid& neighbour_cells() const {
+        return neighbour_cells_;
+    }  ///< of the particles, anisotropic only
+    const BlobShape& shape() const { return shape_; }
+    const FieldShape& field_shape() const { return field_; }
     const float4* blob() const { return blob_.data(); }
     float reach_m() const { return field_.reach_m; }
     std::size_t bytes() const {
-        return sort_.bytes() + unsorted_.bytes() + blob_.bytes() + unsorted_stretch_.bytes() + stretch_.bytes();
+        return sort_.bytes() + unsorted_.bytes() + blob_.bytes() + unsorted_stretch_.bytes() +
+               stretch_.bytes();
     }
 
   private:

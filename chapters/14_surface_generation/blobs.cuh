@@ -25,12 +25,12 @@ struct Stretch {
 struct BlobShape {
     float radius_m = 1;           ///< of a round blob
     float neighbour_reach_m = 1;  ///< particles nearer than that say how a blob lies
-    float pull = 0.6f;            ///< 0: the blob stays at its particle, 1: it moves to its neighbours' centre
-    float flattest = 0.25f;       ///< shortest axis / longest axis
-    float longest = 1.15f;        ///< longest axis / radius of a round blob
-    float lonely = 0.5f;          ///< radius of a blob with hardly any neighbours, relative to a round one
-    float full_ball = 1;          ///< particles within neighbour_reach_m of one deep inside
-    float few = 0.22f;            ///< part of a full ball's neighbours that is hardly any
+    float pull = 0.6f;       ///< 0: the blob stays at its particle, 1: it moves to its neighbours' centre
+    float flattest = 0.25f;  ///< shortest axis / longest axis
+    float longest = 1.15f;   ///< longest axis / radius of a round blob
+    float lonely = 0.5f;     ///< radius of a blob with hardly any neighbours, relative to a round one
+    float full_ball = 1;     ///< particles within neighbour_reach_m of one deep inside
+    float few = 0.22f;       ///< part of a full ball's neighbours that is hardly any
 };
 
 //! [stretches]
@@ -53,7 +53,8 @@ inline __host__ __device__ glm::vec3 stretches(const BlobShape& shape, glm::vec3
 
 //! [make_stretch]
 /// M = R diag(1 / axis^2) R^T.
-inline __host__ __device__ Stretch make_stretch(const BlobShape& shape, const Eigen& eigen, glm::vec3 stretch) {
+inline __host__ __device__ Stretch make_stretch(const BlobShape& shape, const Eigen& eigen,
+                                                glm::vec3 stretch) {
     const glm::vec3 per_axis = 1.0f / (shape.radius_m * stretch);
     const glm::mat3 rows(eigen.vector[0] * per_axis.x, eigen.vector[1] * per_axis.y,
                          eigen.vector[2] * per_axis.z);

@@ -36,9 +36,8 @@ inline __global__ void mark_regions_kernel(std::uint32_t* mark, const float4* bl
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n || !is_finite(xyz(blob[i]))) return;
     const BrickBox bricks = bricks_around(lattice, xyz(blob[i]), blob[i].w);
-    for_each({bricks.low / kRegion, bricks.high / kRegion}, [&](glm::ivec3 region) {
-        atomicExch(&mark[number_of(region, lattice.regions())], 1u);
-    });
+    for_each({bricks.low / kRegion, bricks.high / kRegion},
+             [&](glm::ivec3 region) { atomicExch(&mark[number_of(region, lattice.regions())], 1u); });
 }
 
 /// Only the difference: bricks, in regions that have a place by now.
@@ -131,11 +130,13 @@ class MarkedList {
     /// Waits for the device. @returns how many were marked
     std::uint32_t finish() {
         const std::uint32_t n = before_.size();
-        CUDA_CHECK(cudaMemcpy(before_.data(), mark_.data(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice));
+        CUDA_CHECK(
+            cudaMemcpy(before_.data(), mark_.data(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice));
         count_ = before_.scan();
         make_room(list_, count_);
         if (n == 0) return 0;
-        keep_marked_kernel<<<blocks_for(n, kThreads), kThreads>>>(list_.data(), mark_.data(), before_.data(), n);
+        keep_marked_kernel<<<blocks_for(n, kThreads), kThreads>>>(list_.data(), mark_.data(), before_.data(),
+                                                                  n);
         CUDA_CHECK(cudaGetLastError());
         return count_;
     }
@@ -180,7 +181,8 @@ inline __global__ void neighbours_kernel(std::uint32_t* around, const int4* corn
             brick.y < lattice.bricks.y && brick.z < lattice.bricks.z) {
             const std::uint32_t region = region_place[number_of(brick / kRegion, lattice.regions())];
             if (region != kNone)
-                number = brick_place[region * kRegionBricks + number_of(brick % kRegion, glm::ivec3(kRegion))];
+                number =
+                    brick_place[region * kRegionBricks + number_of(brick % kRegion, glm::ivec3(kRegion))];
         }
         around[kAround * b + k] = number;
     }
@@ -228,7 +230,8 @@ class Bricks {
         check_memory(lattice);
         lattice_ = lattice;
         const std::uint32_t regions = region_count(), bricks = kRegionBricks * regions;
-        mark_all_regions_kernel<<<blocks_for(regions, kThreads), kThreads>>>(regions_.resize(regions), regions);
+        mark_all_regions_kernel<<<blocks_for(regions, kThreads), kThreads>>>(regions_.resize(regions),
+                                                                             regions);
         CUDA_CHECK(cudaGetLastError());
         regions_.finish();
         mark_all_bricks_kernel<<<blocks_for(bricks, kThreads), kThreads>>>(bricks_.resize(bricks), lattice,
@@ -270,7 +273,8 @@ class Bricks {
         const double bytes = 3 * sizeof(std::uint32_t) * regions.x * regions.y * regions.z;
         std::size_t free_bytes = 0, total_bytes = 0;
         CUDA_CHECK(cudaMemGetInfo(&free_bytes, &total_bytes));
-        if (!(bytes < double(total_bytes)) || !(regions.x * regions.y * regions.z < double(kNone / kRegionBricks)))
+        if (!(bytes < double(total_bytes)) ||
+            !(regions.x * regions.y * regions.z < double(kNone / kRegionBricks)))
             throw course::BadInput("the table of regions alone would take " +
                                    std::to_string((unsigned long long)(bytes)) +
                                    " bytes: take a coarser field or a smaller box");

@@ -59,9 +59,9 @@ inline Launches launches_of_build(const Surface& surface) {
     add("keep_marked_kernel");
     add("locate_kernel");
     add("neighbours_kernel");
-    add(anisotropic                                            ? "field_kernel<FieldKind::anisotropic>"
+    add(anisotropic                                         ? "field_kernel<FieldKind::anisotropic>"
         : surface.settings().kind == FieldKind::zhu_bridson ? "field_kernel<FieldKind::zhu_bridson>"
-                                                               : "field_kernel<FieldKind::colour>");
+                                                            : "field_kernel<FieldKind::colour>");
     add("inside_kernel");
     add("classify_kernel");
     scan(bricks.count() * kBrickRows);

@@ -39,8 +39,8 @@ class GlMesh {
     /// For a MeshRenderer, or for draw calls of one's own. All 0 while the mesh is empty.
     MeshBuffers buffers() const {
         if (empty()) return {};
-        return {position_->gl_buffer().id(), normal_ ? normal_->gl_buffer().id() : 0, index_->gl_buffer().id(),
-                size_.triangles};
+        return {position_->gl_buffer().id(), normal_ ? normal_->gl_buffer().id() : 0,
+                index_->gl_buffer().id(), size_.triangles};
     }
     /// How the mesh comes to OpenGL, for the user.
     std::string handover() const { return position_ ? position_->why() : "nothing has been handed over yet"; }

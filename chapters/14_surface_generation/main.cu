@@ -38,7 +38,8 @@ Settings make_settings(const course::ProgramOptions& options, const Choices& cho
     };
     Settings settings;
     settings.drawing = Drawing(one_of("--draw", choices.draw, {"none", "points", "spheres", "surface"}));
-    settings.surface.kind = FieldKind(one_of("--field", choices.field, {"colour", "zhu_bridson", "anisotropic"}));
+    settings.surface.kind =
+        FieldKind(one_of("--field", choices.field, {"colour", "zhu_bridson", "anisotropic"}));
     one_of("--mesh", choices.mesh, {"none", "ply", "obj"});
     if (!(choices.iso >= 0)) throw course::BadInput("--iso must be 0 (what suits the field) or more");
     if (choices.frames < 0) throw course::BadInput("--frames must be 0 or more");
@@ -61,36 +62,13 @@ std::string file_number(int number) {
     return text;
 }
 
-/// Whichever view the settings ask for; the others are not made.
-class View {
-  public:
-    View(const Settings& settings, const sph::Start& start, int width, int height) {
-        if (settings.drawing == Drawing::surface)
-            surface_ = std::make_unique<SurfaceView>(settings, width, height);
-        else
-            particles_ = std::make_unique<sph::WaterView>(settings.water, start, width, height);
-    }
-    void draw(const sph::Water& water, const course::Camera& camera) {
-        if (surface_)
-            surface_->draw(water.position(), water.size(), camera);
-        else
-            particles_->draw(water, camera);
-    }
-    const course::Framebuffer& picture() const { return surface_ ? surface_->picture() : particles_->picture(); }
-    course::Image image() const { return course::read_image(picture()); }
-    std::string handover() const { return surface_ ? surface_->handover() : particles_->handover(); }
-    const Surface* surface() const { return surface_ ? &surface_->surface() : nullptr; }
-
-  private:
-    std::unique_ptr<SurfaceView> surface_;
-    std::unique_ptr<sph::WaterView> particles_;
-};
-
 /// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
 class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const sph::Start& start)
-        : program_(program), settings_(settings), camera_(sph::first_view(settings.water.scene.tank).camera()) {
+        : program_(program),
+          settings_(settings),
+          camera_(sph::first_view(settings.water.scene.tank).camera()) {
         if (settings.drawing == Drawing::none) {  // numbers alone: no OpenGL, and no normals
             numbers_ = std::make_unique<Surface>(settings.surface);
             return;
@@ -119,8 +97,8 @@ class Recorder {
         course::save_png(program_.options.out / file, stills_.back());
         captions_.push_back({file, course::format_number(time_s) + " s, step " + std::to_string(step)});
         if (const Surface* surface = view_->surface())
-            drawn_.row({step, time_s, surface->brick_count(), surface->size().vertices,
-                        surface->size().triangles});
+            drawn_.row(
+                {step, time_s, surface->brick_count(), surface->size().vertices, surface->size().triangles});
     }
 
     /// Everything gathered so far goes into the result; also when the run ends by an error.
@@ -141,9 +119,9 @@ class Recorder {
     course::Program& program_;
     Settings settings_;
     course::Camera camera_;
-    course::Table table_{"The surface",
-                         {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)",
-                          "ms"}};
+    course::Table table_{
+        "The surface",
+        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "ms"}};
     course::Table drawn_{"The surface", {"step", "time (s)", "bricks", "vertices", "triangles"}};
     std::unique_ptr<Surface> numbers_;
     DeviceMesh mesh_{Normals::none};
@@ -197,7 +175,8 @@ void run_window(course::Program& program, const Choices& choices, const Settings
     const course::ProgramOptions& options = program.options;
     const auto window =
         course::make_window(options.width, options.height, "Water's surface: " + settings.water.scene.name);
-    if (settings.drawing == Drawing::none) throw course::BadInput("--window shows something: not with --draw none");
+    if (settings.drawing == Drawing::none)
+        throw course::BadInput("--window shows something: not with --draw none");
     View view(settings, start, options.width, options.height);
     std::printf(
         "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
@@ -244,20 +223,23 @@ void print_explanation(const Settings& settings, const sph::Start& start) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    course::Program program("14_surface_generation", "The water's surface",
-                            "A field on a grid that exists only where particles are, and marching cubes in four "
-                            "kernels: water gets a skin, as a picture or as a file.");
+    course::Program program(
+        "14_surface_generation", "The water's surface",
+        "A field on a grid that exists only where particles are, and marching cubes in four "
+        "kernels: water gets a skin, as a picture or as a file.");
     program.options.particles = 16384;
     program.options.steps = 1000;
     for (const sph::Scene& scene : sph::all_scenes()) program.scenes.push_back(scene.name);
     Choices choices;
     program.option("--draw", choices.draw, "surface, spheres, points, or none (numbers alone, no OpenGL)");
     program.option("--field", choices.field, "anisotropic, zhu_bridson or colour");
-    program.option("--resolution", choices.resolution, "nodes of the field for each spacing of the particles");
+    program.option("--resolution", choices.resolution,
+                   "nodes of the field for each spacing of the particles");
     program.option("--iso", choices.iso, "value of the field where the surface is (0: what suits the field)");
     program.option("--mesh", choices.mesh, "write the last surface as ply or obj");
     program.flag("--dense", choices.dense, "bricks everywhere in the box, to compare");
-    program.option("--frames", choices.frames, "close the window after so many frames (0: when the user does)");
+    program.option("--frames", choices.frames,
+                   "close the window after so many frames (0: when the user does)");
     declare_studies(program);
     return program.run(argc, argv, [&] {
         Settings settings = make_settings(program.options, choices);

@@ -15,14 +15,17 @@ namespace surface {
 /// @throws course::BadInput if a number of the mesh is not one, or an index points nowhere: no program could
 /// read that
 inline void check_mesh(const Mesh& mesh) {
-    const auto finite = [](const float4& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+    const auto finite = [](const float4& v) {
+        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    };
     for (const auto* list : {&mesh.position, &mesh.normal})
         for (const float4& v : *list)
             if (!finite(v)) throw course::BadInput("the mesh has a vertex that is not a number: not written");
     if (!mesh.normal.empty() && mesh.normal.size() != mesh.position.size())
         throw course::BadInput("the mesh has normals for some of its vertices only: not written");
     for (std::uint32_t i : mesh.index)
-        if (i >= mesh.position.size()) throw course::BadInput("the mesh has a triangle without corners: not written");
+        if (i >= mesh.position.size())
+            throw course::BadInput("the mesh has a triangle without corners: not written");
 }
 
 //! [ply]
@@ -31,12 +34,11 @@ inline void check_mesh(const Mesh& mesh) {
 inline void save_ply(const std::filesystem::path& path, const Mesh& mesh) {
     check_mesh(mesh);
     const bool normals = !mesh.normal.empty();
-    std::string file = "ply\nformat binary_little_endian 1.0\ncomment lengths in m\nelement vertex " +
-                       std::to_string(mesh.position.size()) +
-                       "\nproperty float x\nproperty float y\nproperty float z\n" +
-                       (normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
-                       "element face " + std::to_string(mesh.triangles()) +
-                       "\nproperty list uchar uint vertex_indices\nend_header\n";
+    std::string file =
+        "ply\nformat binary_little_endian 1.0\ncomment lengths in m\nelement vertex " +
+        std::to_string(mesh.position.size()) + "\nproperty float x\nproperty float y\nproperty float z\n" +
+        (normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") + "element face " +
+        std::to_string(mesh.triangles()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
     const auto add = [&file](const void* bytes, std::size_t count) {
         file.append(static_cast<const char*>(bytes), count);
     };

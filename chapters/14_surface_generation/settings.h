@@ -23,8 +23,8 @@ struct SurfaceSettings {
     float iso = 0;                     ///< where the surface is; 0: default_iso()
     float radius = 0;                  ///< of a round blob; 0: default_radius()
     float neighbour_reach = 3;         ///< anisotropic: particles so near say how a blob lies
-    float pull = 0.6f;                 ///< anisotropic: 0: a blob stays at its particle, 1: at its neighbours' mean
-    bool sparse = true;                ///< bricks where particles are, or everywhere in the box around them
+    float pull = 0.6f;   ///< anisotropic: 0: a blob stays at its particle, 1: at its neighbours' mean
+    bool sparse = true;  ///< bricks where particles are, or everywhere in the box around them
 };
 //! [SurfaceSettings]
 
@@ -51,7 +51,8 @@ inline SurfaceSettings complete(SurfaceSettings s) {
         if (!good) throw course::BadInput(sentence);
     };
     want(s.particle_spacing_m >= 1e-12f && s.particle_spacing_m <= 1e12f,
-         "the particles' spacing must be from 1e-12 to 1e12 m, not " + std::to_string(s.particle_spacing_m) + " m");
+         "the particles' spacing must be from 1e-12 to 1e12 m, not " + std::to_string(s.particle_spacing_m) +
+             " m");
     want(s.nodes_per_spacing >= 0.25f && s.nodes_per_spacing <= 64,
          "a surface takes 0.25 to 64 nodes for each spacing of the particles, not " +
              std::to_string(s.nodes_per_spacing));
@@ -63,7 +64,8 @@ inline SurfaceSettings complete(SurfaceSettings s) {
          "the iso-value must be at least 0.001, since the field is 0 where no particle is, not " +
              std::to_string(s.iso));
     want(s.neighbour_reach >= 0.5f && s.neighbour_reach <= 8,
-         "a blob's neighbours are looked for within 0.5 to 8 spacings, not " + std::to_string(s.neighbour_reach));
+         "a blob's neighbours are looked for within 0.5 to 8 spacings, not " +
+             std::to_string(s.neighbour_reach));
     want(s.pull >= 0 && s.pull <= 1, "a blob is pulled by a part from 0 to 1, not " + std::to_string(s.pull));
     return s;
 }

@@ -21,8 +21,9 @@ inline Lattice lattice_around(const patterns::Bounds& box, float reach_m, float 
     const glm::dvec3 nodes = glm::ceil((glm::dvec3(box.high_m) + rim) / h) - low + 1.0;
     const double longest = glm::max(nodes.x, glm::max(nodes.y, nodes.z));
     if (!(longest < 1 << 24))  // where a float can no longer tell one node from the next
-        throw course::BadInput("the particles' box is " + std::to_string(longest) +
-                               " nodes long, and 16777216 is the most: take a coarser field or a smaller box");
+        throw course::BadInput(
+            "the particles' box is " + std::to_string(longest) +
+            " nodes long, and 16777216 is the most: take a coarser field or a smaller box");
     return {glm::vec3(low * h), spacing_m, glm::ivec3(glm::ceil(nodes / double(kBrick)))};
 }
 //! [lattice_around]

@@ -1,6 +1,8 @@
 /// @file
 /// The water's surface on screen: a mesh in OpenGL's buffers, drawn with soft light.
 #pragma once
+#include <memory>
+
 #include "10_water_sph/water_view.cuh"
 #include "14_surface_generation/explain.h"
 #include "14_surface_generation/gl_mesh.cuh"
@@ -42,6 +44,33 @@ class SurfaceView {
     Surface surface_;
     GlMesh mesh_;
     MeshRenderer renderer_;
+};
+
+/// Whichever view the settings ask for; the others are not made.
+class View {
+  public:
+    View(const Settings& settings, const sph::Start& start, int width, int height) {
+        if (settings.drawing == Drawing::surface)
+            surface_ = std::make_unique<SurfaceView>(settings, width, height);
+        else
+            particles_ = std::make_unique<sph::WaterView>(settings.water, start, width, height);
+    }
+    void draw(const sph::Water& water, const course::Camera& camera) {
+        if (surface_)
+            surface_->draw(water.position(), water.size(), camera);
+        else
+            particles_->draw(water, camera);
+    }
+    const course::Framebuffer& picture() const {
+        return surface_ ? surface_->picture() : particles_->picture();
+    }
+    course::Image image() const { return course::read_image(picture()); }
+    std::string handover() const { return surface_ ? surface_->handover() : particles_->handover(); }
+    const Surface* surface() const { return surface_ ? &surface_->surface() : nullptr; }
+
+  private:
+    std::unique_ptr<SurfaceView> surface_;
+    std::unique_ptr<sph::WaterView> particles_;
 };
 
 }  // namespace surface
