@@ -71,7 +71,8 @@ class Surface {
     const MarchingCubes& marching_cubes() const { return marching_cubes_; }
     /// Device memory held now.
     std::size_t bytes() const {
-        return blobs_.bytes() + bricks_.bytes() + field_.bytes() + marching_cubes_.bytes();
+        return 6 * sizeof(float) + blobs_.bytes() + bricks_.bytes() + field_.bytes() +  // six: the bounds
+               marching_cubes_.bytes();
     }
 
   private:
