@@ -88,7 +88,8 @@ class Recorder {
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
             const Measures measures = measure(mesh_.download());
             table_.row({step, time_s, numbers_->brick_count(), mesh_.size().vertices, mesh_.size().triangles,
-                        measures.area_m2, measures.volume_m3, 1e3 * seconds});
+                        measures.area_m2, measures.volume_m3,
+                        1e-6 * double(numbers_->bytes() + mesh_.bytes()), 1e3 * seconds});
             return;
         }
         view_->draw(start.water, camera_);
@@ -121,7 +122,7 @@ class Recorder {
     course::Camera camera_;
     course::Table table_{
         "The surface",
-        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "ms"}};
+        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "MB", "ms"}};
     course::Table drawn_{"The surface", {"step", "time (s)", "bricks", "vertices", "triangles"}};
     std::unique_ptr<Surface> numbers_;
     DeviceMesh mesh_{Normals::none};
