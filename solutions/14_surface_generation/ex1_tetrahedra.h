@@ -27,7 +27,8 @@ using TetTriangle = std::array<glm::dvec3, 3>;
 // A vertex lies where the value, taken as linear along the edge, is 0.
 inline std::vector<TetTriangle> tetrahedron_triangles(std::array<TetCorner, 4> corner) {
     // TODO(14.1): sort the corners so that those inside come first, and keep the orientation: each swap of
-    // two corners turns it round, so an odd number of swaps needs one more. About 25 lines. <solution>
+    // two corners turns it round, so an odd number of swaps needs one more. About 25 lines.
+    // <solution>
     bool turned = false;
     int inside = 0;
     for (int k = 0; k < 4; ++k)
