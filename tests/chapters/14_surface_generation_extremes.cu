@@ -586,7 +586,7 @@ TEST_CASE("points and spheres: no field and no mesh; numbers: no OpenGL") {
 
 TEST_CASE("bad input ends with one clear sentence and exit code 2") {
     const course::TemporaryFolder folder;
-    const std::string out = " --steps 0 --particles 50 --draw none --out " + folder.path().string();
+    const std::string out = " --steps 0 --particles 50 --out " + folder.path().string();
     const auto run = [&](const std::string& arguments) {
         return course::run_program(kProgram, arguments + out);
     };
