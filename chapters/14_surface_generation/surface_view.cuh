@@ -17,7 +17,8 @@ class SurfaceView {
         : surface_(settings.surface), renderer_(width_px, height_px, look(settings)) {}
 
     //! [draw]
-    /// Particles to picture; nothing of it leaves the device but two numbers, the sizes of the mesh.
+    /// Particles to picture. What comes to the host: the box around the particles, and how many regions,
+    /// bricks, crossed rows, vertices and triangles there are.
     void draw(const float4* position, std::uint32_t n, const course::Camera& camera) {
         surface_.build(position, n);
         mesh_.take(surface_);
