@@ -1,13 +1,12 @@
 /// @file
 /// What methods do to an orbit and to a handful of oscillators, drawn with chapter 01's spots of light.
 #pragma once
-#include <stb/stb_easy_font.h>
-
 #include <string>
 
 #include "01_particle_loop/splat.h"
 #include "02_integrators/methods.h"
 #include "02_integrators/problems.h"
+#include "common/letters.h"
 
 namespace integrators {
 
@@ -25,19 +24,12 @@ inline particle_loop::Canvas make_panel(int width, int height, glm::vec2 centre,
 
 /// A word in the upper left corner, in letters 7 x `scale` pixels high.
 inline void write(course::Image& image, const std::string& words, int scale) {
-    std::vector<char> quads(300 * (words.size() + 1));
-    const int count =
-        stb_easy_font_print(4, 4, const_cast<char*>(words.c_str()), nullptr, quads.data(), int(quads.size()));
-    struct Corner {
-        float x, y, z;
-        unsigned char colour[4];
-    };
-    const Corner* corner = reinterpret_cast<const Corner*>(quads.data());
-    for (int q = 0; q < count; ++q, corner += 4)
-        for (int y = int(corner[0].y) * scale; y < int(corner[2].y) * scale; ++y)
-            for (int x = int(corner[0].x) * scale; x < int(corner[2].x) * scale; ++x)
+    course::for_each_stroke(words, [&](glm::vec2 low, glm::vec2 high) {
+        for (int y = (int(low.y) + 4) * scale; y < (int(high.y) + 4) * scale; ++y)
+            for (int x = (int(low.x) + 4) * scale; x < (int(high.x) + 4) * scale; ++x)
                 if (x < image.width && y < image.height)
                     for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = 225;
+    });
 }
 
 /// A line of light. Spots are set closer than they are large, so that no gap is seen; together they give the

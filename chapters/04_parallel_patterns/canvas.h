@@ -1,17 +1,15 @@
 /// @file
 /// A few shapes and words on a course::Image: enough for the figures of this chapter and the next.
 #pragma once
-#include <stb/stb_easy_font.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <string>
-#include <vector>
 
 #include "common/image.h"
+#include "common/letters.h"
 
 /// Shapes, words and colours.
 namespace patterns::drawing {
@@ -53,21 +51,12 @@ class Canvas {
         });
     }
     /// One line of text, its top left corner at `at`; a capital is about 7 * scale pixels high.
-    void text(glm::vec2 at, std::string words, Colour colour, float scale) {
-        struct Vertex {
-            float x, y, z;
-            unsigned char rgba[4];
-        };
-        std::vector<Vertex> corners(4 * 70 * words.size());  // a letter is a few rectangles
-        const int count = stb_easy_font_print(0, 0, words.data(), nullptr, corners.data(),
-                                              int(corners.size() * sizeof(Vertex)));
-        for (int k = 0; k < 4 * count; k += 4)
-            rectangle(at + scale * glm::vec2(corners[k].x, corners[k].y),
-                      at + scale * glm::vec2(corners[k + 2].x, corners[k + 2].y), colour);
+    void text(glm::vec2 at, const std::string& words, Colour colour, float scale) {
+        course::for_each_stroke(words, [&](glm::vec2 low, glm::vec2 high) {
+            rectangle(at + scale * low, at + scale * high, colour);
+        });
     }
-    static float text_width(std::string words, float scale) {
-        return scale * float(stb_easy_font_width(words.data()));
-    }
+    static float text_width(const std::string& words, float scale) { return scale * course::width_of(words); }
     const course::Image& image() const { return image_; }
 
   private:

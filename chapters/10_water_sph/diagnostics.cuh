@@ -7,55 +7,68 @@
 #include <string>
 #include <vector>
 
+#include "04_parallel_patterns/reduce.cuh"
 #include "10_water_sph/water.cuh"
 #include "common/errors.h"
 
 namespace sph {
 
-/// Sums and extremes over all particles, or over one chunk of them.
+/// Sums and extremes over all particles, or over some of them.
 struct Summary {
-    double kinetic_J = 0;    ///< of motion
-    double potential_J = 0;  ///< in gravity, zero at the box's floor
-    double front_m = -1e30;  ///< largest x
-    double density_sum = 0;  ///< of all particles, kg/m^3
-    float highest_density = 0;
-    std::uint32_t densest = 0;  ///< place of that particle
-    float highest_speed = 0;    ///< infinite if any particle is not finite
-    std::uint32_t fastest = 0;  ///< place of that particle
+    double kinetic_J;       ///< of motion
+    double potential_J;     ///< in gravity, zero at the box's floor
+    double front_m;         ///< largest x
+    double density_sum;     ///< of all particles, kg/m^3
+    float highest_density;  ///< kg/m^3
+    std::uint32_t densest;  ///< place of that particle
+    float highest_speed;    ///< m/s; infinite if any particle is not finite
+    std::uint32_t fastest;  ///< place of that particle
 };
 
-constexpr std::uint32_t kSummaryChunk = 256;
+//! [Summing]
+/// Two summaries as one, for chapter 04's tree. Sums are in double, and a tree adds in the same order each
+/// time: an atomicAdd of floats would give another last digit in each run.
+struct Summing {
+    using Value = Summary;
+    static __host__ __device__ Summary nothing() { return {0, 0, -1e30, 0, 0, 0, 0, 0}; }
+    static __host__ __device__ Summary combine(Summary a, const Summary& b) {
+        a.kinetic_J += b.kinetic_J;
+        a.potential_J += b.potential_J;
+        a.density_sum += b.density_sum;
+        a.front_m = fmax(a.front_m, b.front_m);
+        if (b.highest_density > a.highest_density) {
+            a.highest_density = b.highest_density;
+            a.densest = b.densest;
+        }
+        if (b.highest_speed > a.highest_speed) {
+            a.highest_speed = b.highest_speed;
+            a.fastest = b.fastest;
+        }
+        return a;
+    }
+};
 
-//! [summary_kernel]
-/// One thread per chunk of 256 particles. Sums in double and in a fixed order: an atomicAdd of floats would
-/// give another last digit in each run.
-inline __global__ void summary_kernel(Summary* chunks, const float4* position, const float4* velocity,
-                                      const float* density, Fluid fluid, float floor_m, std::uint32_t n) {
-    const std::uint32_t chunk = blockIdx.x * blockDim.x + threadIdx.x;
-    const std::uint32_t first = chunk * kSummaryChunk;
-    if (first >= n) return;
-    Summary sum;
-    for (std::uint32_t i = first; i < min(n, first + kSummaryChunk); ++i) {
+/// The particles as an array of summaries of one particle each, none of which is ever stored.
+struct SummariesOfOne {
+    const float4 *position, *velocity;
+    const float* density;
+    float mass_kg, gravity_m_per_s2, floor_m;
+
+    __device__ Summary operator[](std::uint32_t i) const {
         const glm::vec3 x = grid::xyz(position[i]), v = grid::xyz(velocity[i]);
         const float speed_squared = v.x * v.x + v.y * v.y + v.z * v.z;
         const bool finite = grid::is_finite(x) && grid::is_finite(v) && speed_squared < 1e30f;
-        const float speed = finite ? sqrtf(speed_squared) : INFINITY;
-        if (speed > sum.highest_speed) {
-            sum.highest_speed = speed;
-            sum.fastest = i;
-        }
-        if (density[i] > sum.highest_density) {
-            sum.highest_density = density[i];
-            sum.densest = i;
-        }
-        sum.density_sum += density[i];
-        sum.kinetic_J += 0.5 * fluid.mass_kg * speed_squared;
-        sum.potential_J -= double(fluid.mass_kg) * fluid.gravity_m_per_s2.y * (x.y - floor_m);
-        sum.front_m = fmax(sum.front_m, double(x.x));
+        return {0.5 * mass_kg * speed_squared,
+                -double(mass_kg) * gravity_m_per_s2 * (x.y - floor_m),
+                double(x.x),
+                double(density[i]),
+                density[i],
+                i,
+                finite ? sqrtf(speed_squared) : INFINITY,
+                i};
     }
-    chunks[chunk] = sum;
-}
-//! [summary_kernel]
+};
+//! [Summing]
 
 /// Values by particle number, whatever order the water keeps them in.
 template <class T>
@@ -70,36 +83,18 @@ std::vector<T> by_id(const Water& water, const course::DeviceBuffer<T>& buffer) 
 /// Makes summaries, again and again, in memory made once.
 class Summarizer {
   public:
-    explicit Summarizer(std::uint32_t max_particles)
-        : chunks_(grid::blocks_for(max_particles, kSummaryChunk)) {}
+    explicit Summarizer(std::uint32_t max_particles) : reduce_(max_particles) {}
 
     Summary operator()(const Water& water) {
-        const std::uint32_t count = grid::blocks_for(water.size(), kSummaryChunk);
-        Summary total;
-        if (count == 0) return total;
-        summary_kernel<<<grid::blocks_for(count, 64), 64>>>(chunks_.data(), water.position(),
-                                                            water.velocity(), water.densities().data(),
-                                                            water.fluid(), water.box().low_m.y, water.size());
-        CUDA_CHECK(cudaGetLastError());
-        for (const Summary& chunk : chunks_.download()) {
-            if (chunk.highest_speed > total.highest_speed) {
-                total.highest_speed = chunk.highest_speed;
-                total.fastest = chunk.fastest;
-            }
-            if (chunk.highest_density > total.highest_density) {
-                total.highest_density = chunk.highest_density;
-                total.densest = chunk.densest;
-            }
-            total.density_sum += chunk.density_sum;
-            total.kinetic_J += chunk.kinetic_J;
-            total.potential_J += chunk.potential_J;
-            total.front_m = std::fmax(total.front_m, chunk.front_m);
-        }
-        return total;
+        const Fluid& fluid = water.fluid();
+        reduce_(SummariesOfOne{water.position(), water.velocity(), water.densities().data(), fluid.mass_kg,
+                               fluid.gravity_m_per_s2.y, water.box().low_m.y},
+                water.size());
+        return reduce_.download();
     }
 
   private:
-    course::DeviceBuffer<Summary> chunks_;
+    patterns::TreeReduction<Summing> reduce_;
 };
 
 //! [is_water]

@@ -61,13 +61,14 @@ class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const Start& start)
         : program_(program),
-          camera_(first_view(settings.scene.tank).camera()),
+          camera_(interop::first_view(look_of(settings, start).tank).camera()),
           table_("The water's state",
                  {"step", "time (s)", "front (m)", "kinetic energy (J)", "total energy (J)",
                   "mean density (kg/m^3)", "highest (kg/m^3)", "fastest (m/s)"}) {
         if (settings.drawing == Drawing::none) return;  // numbers alone: no OpenGL
         context_ = course::make_headless_context();
-        view_ = std::make_unique<WaterView>(settings, start, program.options.width, program.options.height);
+        view_ = std::make_unique<interop::TankView>(look_of(settings, start), start.water.size(),
+                                                    program.options.width, program.options.height);
         program.result().note("OpenGL " + context_->info().version + ", " + context_->info().renderer +
                               "; handover: " + view_->handover());
     }
@@ -77,7 +78,7 @@ class Recorder {
                     now.kinetic_J + now.potential_J, now.density_sum / start.water.size(),
                     now.highest_density, now.highest_speed});
         if (!view_) return;
-        view_->draw(start.water, camera_);
+        view_->draw(start.water.position(), start.water.velocity(), start.water.size(), camera_);
         stills_.push_back(view_->image());
         const std::string file = "still_" + file_number(step) + ".png";
         course::save_png(program_.options.out / file, stills_.back());
@@ -101,7 +102,7 @@ class Recorder {
     course::Camera camera_;
     course::Table table_;
     std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
-    std::unique_ptr<WaterView> view_;
+    std::unique_ptr<interop::TankView> view_;
     std::vector<course::Image> stills_;
     std::vector<std::pair<std::string, std::string>> captions_;
 };
@@ -150,13 +151,14 @@ void run_window(course::Program& program, const Choices& choices, const Settings
     const course::ProgramOptions& options = program.options;
     const auto window =
         course::make_window(options.width, options.height, "Water by SPH: " + settings.scene.name);
-    WaterView view(settings, start, options.width, options.height);
+    const interop::TankScene look = look_of(settings, start);
+    interop::TankView view(look, start.water.size(), options.width, options.height);
     std::printf("%s; handover: %s\n", window->info().renderer.c_str(), view.handover().c_str());
     std::printf(
         "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
         "P: picture, Esc: end\n");
     Summarizer summarize(start.water.size());
-    course::OrbitCamera orbit = first_view(settings.scene.tank);
+    course::OrbitCamera orbit = interop::first_view(look.tank);
     bool paused = false;
     int step = 0;
     for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
@@ -173,7 +175,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
             if (++step % kStepsPerCheck == 0)
                 check_state(start.water, summarize(start.water), step, start.dt_s);
         }
-        view.draw(start.water, orbit.camera());
+        view.draw(start.water.position(), start.water.velocity(), start.water.size(), orbit.camera());
         if (events.screenshot) {
             const std::string file = "screenshot_" + file_number(step) + ".png";
             course::save_png(options.out / file, view.image());

@@ -557,8 +557,10 @@ TEST_CASE("points need no lighting: fewer OpenGL objects than spheres, and none 
         settings.drawing = k == 0 ? sph::Drawing::points : sph::Drawing::spheres;
         const int before = course::gl_count().made;
         {
-            sph::WaterView view(settings, start, 160, 90);
-            view.draw(start.water, sph::first_view(settings.scene.tank).camera());
+            const interop::TankScene look = sph::look_of(settings, start);
+            interop::TankView view(look, start.water.size(), 160, 90);
+            view.draw(start.water.position(), start.water.velocity(), start.water.size(),
+                      interop::first_view(look.tank).camera());
             const course::Image image = view.image();
             // The water is in the picture: many pixels are clearly blue.
             int blue = 0;
