@@ -66,9 +66,7 @@ std::string file_number(int number) {
 class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const sph::Start& start)
-        : program_(program),
-          settings_(settings),
-          camera_(sph::first_view(settings.water.scene.tank).camera()) {
+        : program_(program), settings_(settings), camera_(interop::first_view(tank_of(settings)).camera()) {
         if (settings.drawing == Drawing::none) {  // numbers alone: no OpenGL, and no normals
             numbers_ = std::make_unique<Surface>(settings.surface);
             return;
@@ -183,7 +181,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
         "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
         "P: picture, Esc: end\n");
     sph::Summarizer summarize(start.water.size());
-    course::OrbitCamera orbit = sph::first_view(settings.water.scene.tank);
+    course::OrbitCamera orbit = interop::first_view(tank_of(settings));
     bool paused = false;
     int step = 0;
     for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
