@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
     return program.run(argc, argv, [&] {
         Settings settings = make_settings(program.options, choices);
         course::require_memory(double(settings.water.particles) *
-                               (2 * sizeof(float4) + sph::Water::kBytesPerParticle));
+                               (2 * sizeof(float4) + sph::Water::bytes_per_particle(true)));
         complete(settings.surface);  // bad input is told before the water is made
         sph::Start start = sph::make_start(settings.water);
         settings.surface.particle_spacing_m = start.spacing_m;
