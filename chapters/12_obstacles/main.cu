@@ -4,6 +4,7 @@
 
 #include "12_obstacles/explain.h"
 #include "12_obstacles/fire_run.cuh"
+#include "12_obstacles/marble_run.cuh"
 #include "12_obstacles/observe.cuh"
 #include "12_obstacles/obstacle_view.cuh"
 #include "12_obstacles/studies.cuh"
@@ -18,6 +19,7 @@ using namespace obstacles;
 constexpr int kStills = 9;          // pictures of a run: the start, the end, and seven evenly between
 constexpr int kStepsPerCheck = 10;  // as in chapter 10
 constexpr const char* kFireScene = "flame_around_ball";
+constexpr const char* kMarbleScene = "marbles_on_sphere";
 
 /// What this program can be asked for, beyond the options that all programs have.
 struct Choices {
@@ -191,7 +193,7 @@ void run_window(course::Program& program, const Choices& choices, const Make& ma
             hand_m = dragged(hand_m, events, orbit.camera(), options.height);
             run->obstacles().lead(0, hand_m);
         }
-        if (!paused || events.step) {
+        for (int k = 0; k < (paused ? int(events.step) : Run::kStepsPerFrame); ++k) {
             run->step();
             if (++step % kStepsPerCheck == 0) run->check_state(step);
         }
@@ -221,6 +223,32 @@ void run_water(course::Program& program, const Choices& choices) {
         run_window<WaterRun>(program, choices, make);
     } else {
         WaterRun run = make();
+        run_headless(program, choices, run);
+    }
+}
+
+void run_marbles(course::Program& program, const Choices& choices) {
+    const course::ProgramOptions& options = program.options;
+    MarbleSettings settings;
+    settings.scene = marbles_on_sphere();
+    adjust(settings.scene.obstacles, choices);
+    settings.control = options.window ? Control::hand : Control::path;
+    settings.particles = options.particles;
+    settings.dt_s = options.dt_s;
+    settings.speed = choices.speed;
+    settings.seed = options.seed;
+    course::require_memory(double(settings.particles) *
+                           (2 * sizeof(float4) + spring_mass::Marbles::kBytesPerMarble));
+    const auto make = [&] { return MarbleRun(settings); };
+    if (options.explain) {
+        const MarbleRun run = make();
+        std::printf("%s", explain(options.scene, spring_mass::launches_per_step(run.marbles()),
+                                  launches_per_step(run.obstacles()), run.obstacles(), false, choices.draws())
+                              .c_str());
+    } else if (options.window) {
+        run_window<MarbleRun>(program, choices, make);
+    } else {
+        MarbleRun run = make();
         run_headless(program, choices, run);
     }
 }
@@ -356,6 +384,7 @@ int main(int argc, char** argv) {
     program.options.particles = 5832;  // 18^3: the dam of the first scene is a whole cube
     program.options.steps = 0;         // as many as the scene takes
     for (const WaterScene& scene : water_scenes()) program.scenes.push_back(scene.water.name);
+    program.scenes.push_back(kMarbleScene);
     program.scenes.push_back(kFireScene);
     Choices choices;
     program.option("--draw", choices.draw, "spheres, or none (numbers alone, no OpenGL)");
@@ -374,6 +403,8 @@ int main(int argc, char** argv) {
         if (!program.options.explain) program.result().device = course::device_name();
         if (program.options.scene == kFireScene)
             run_fire(program, choices);
+        else if (program.options.scene == kMarbleScene)
+            run_marbles(program, choices);
         else
             run_water(program, choices);
     });

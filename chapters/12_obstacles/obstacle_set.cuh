@@ -117,6 +117,7 @@ class ObstacleSet {
             now_.obstacle[k].surface = o.surface;
             now_.obstacle[k].from_m = now_.obstacle[k].to_m = motion_[k].position_m;
         }
+        received_.assign(obstacles.size(), glm::dvec3(0));
         pass_.mass_kg = setting.particle_mass_kg;
         if (!two_way_) return;  // nobody feels anything: nothing is kept or added up
         impulse_ = course::DeviceBuffer<Impulse>(std::size_t(setting.particles) * now_.count);
@@ -205,7 +206,6 @@ class ObstacleSet {
     /// Free obstacles get what the particles have lost: to the last bit of a double. Waits for the device.
     void finish(std::uint32_t n) {
         if (!two_way_) return;
-        received_.assign(now_.count, glm::dvec3(0));
         for (int k = 0; k < now_.count; ++k) {
             add_impulses_[0](static_cast<const Impulse*>(pass_.impulse + std::size_t(k) * n), n);
             const Impulse sum = add_impulses_[0].download();

@@ -125,6 +125,7 @@ class WaterRun {
     float dt_s() const { return start_.dt_s; }
     float spacing_m() const { return start_.spacing_m; }
     double particle_mass_kg() const { return start_.water.fluid().mass_kg; }
+    static constexpr int kStepsPerFrame = 1;
     double duration_s() const { return settings_.scene.duration_s / settings_.speed; }
     /// As chapter 10 would be asked for the same water.
     sph::Settings water_settings() const { return water_settings(settings_); }

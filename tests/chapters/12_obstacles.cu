@@ -9,6 +9,7 @@
 #include "12_obstacles/contact_cpu.h"
 #include "12_obstacles/explain.h"
 #include "12_obstacles/fire_run.cuh"
+#include "12_obstacles/marble_run.cuh"
 #include "12_obstacles/observe.cuh"
 #include "12_obstacles/obstacle_view.cuh"
 #include "12_obstacles/studies.cuh"
@@ -731,6 +732,32 @@ TEST_CASE("no flame is inside the ball, and none loses its age") {
     CHECK(near > 20);  // the ball does stand in the fire
 }
 
+TEST_CASE("marbles run off a ball: none gets in, none gets lost, and a smooth ball keeps none") {
+    for (const float friction : {0.0f, 1.0f}) {
+        MarbleSettings settings;
+        settings.scene = marbles_on_sphere();
+        settings.scene.obstacles[0].surface = {0.3f, friction};
+        settings.particles = 216;
+        MarbleRun run(settings);
+        const int steps = int(0.8 / run.dt_s());
+        for (int step = 1; step <= steps; ++step) {
+            run.step();
+            if (step % 100 != 0) continue;
+            run.check_state(step);  // energy, among other things
+            const Observation seen =
+                observe(run.position(), run.velocity(), run.size(), run.particle_mass_kg(), run.obstacles());
+            CHECK(seen.deepest_m < 1e-6);  // fp32 at half a metre
+        }
+        int on_top = 0;
+        for (const float4& x : run.marbles().positions().download()) {
+            CHECK((x.x >= 0 && x.x <= 0.6f && x.y >= 0 && x.z >= 0 && x.z <= 0.6f));
+            on_top += x.y > 0.25f;
+        }
+        MESSAGE("friction " << friction << ": " << on_top << " of 216 on top of the ball");
+        if (friction == 0) CHECK(on_top == 0);
+    }
+}
+
 TEST_CASE("what --explain says is what happens: launches and bytes, in water and in fire") {
 #ifndef __CUDASIM__
     course::require_simulator();
@@ -760,6 +787,21 @@ TEST_CASE("what --explain says is what happens: launches and bytes, in water and
                 for (const auto& [kernel, count] : added) CHECK(text.find(kernel) != std::string::npos);
                 CHECK(recording.launches().size() == total);
             }
+    // Marbles: the obstacles' pass comes on top of theirs, which may or may not make a new list.
+    for (const bool without : {false, true}) {
+        MarbleSettings settings;
+        settings.scene = marbles_on_sphere();
+        settings.particles = 216;
+        if (without) settings.scene.obstacles.clear();
+        MarbleRun run(settings);
+        cudasim::Recording recording;
+        run.step();
+        const Launches added = launches_per_step(run.obstacles());
+        CHECK(added.size() == (without ? 0u : 1u));
+        CHECK(recording.count("contact_kernel<Clock, false>") == (without ? 0u : 1u));
+        for (const auto& [kernel, count] : spring_mass::launches_per_step(run.marbles()))
+            CHECK_MESSAGE(recording.count(kernel) == std::size_t(count), kernel);
+    }
     // Bytes: a free obstacle wants 24 a particle, and the trees a little; others want none.
     for (const bool free : {false, true}) {
         Obstacle ball = moving(kBall, {0, 0, 0}, {0, 0, 0});

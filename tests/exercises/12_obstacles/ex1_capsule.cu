@@ -110,7 +110,7 @@ TEST_CASE("a segment without length is a sphere") {
 TEST_CASE("on the segment itself the way out is up, or along x where the segment leads up") {
     course::set_hint(3);
     const Capsule lying{{-1, 0, 0}, {1, 0, 0}, 0.5f}, upright{{0, -1, 0}, {0, 1, 0}, 0.5f},
-        none{{}, {}, 0.5f};
+        none{glm::vec3(0), glm::vec3(0), 0.5f};
     const std::vector<float4> middle(1, make_float4(0, 0, 0, 0)), up{make_float4(0, 1, 0, -0.5f)},
         across{make_float4(1, 0, 0, -0.5f)};
     course::check_equal(evaluate(lying, middle), up, "way out and distance, lying,", "point");
