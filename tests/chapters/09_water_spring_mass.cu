@@ -479,6 +479,7 @@ TEST_CASE("without damping energy stays within the bound of the step, with it it
         bool falls = true;
         for (int step = 0; step < 3000; ++step) {
             marbles.step(float(dt_s));
+            if (step % 7 != 0) continue;  // at any moment of a contact, and not too often: it takes time
             const Summary now = summarize(marbles);
             highest = std::max(highest, now.energy_J());
             if (damping > 0 && now.energy_J() > last * (1 + bound)) falls = false;
