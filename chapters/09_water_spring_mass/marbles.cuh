@@ -100,7 +100,7 @@ class Marbles {
           acceleration_(n_),
           id_(n_),
           sorted_id_(n_),
-          neighbour_(NeighbourList::words_for(n_)),
+          neighbour_(NeighbourList::place(n_)),
           neighbour_count_(n_),
           outdated_(1) {
         std::vector<std::uint32_t> ids(n_);
@@ -152,7 +152,7 @@ class Marbles {
     bool has_attraction() const { return material_.attraction_N_per_m > 0; }
     bool has_drag() const { return material_.drag_per_s > 0; }
 
-    /// Bytes of device memory per marble, the grid's cells and the last group of lists not counted.
+    /// Bytes of device memory per marble, the grid's cells not counted.
     static constexpr std::size_t kBytesPerMarble = 5 * sizeof(float4) + 2 * sizeof(std::uint32_t) +  // state
                                                    2 * sizeof(std::uint32_t) +  // cell and order
                                                    (1 + NeighbourList::kCapacity) * sizeof(std::uint32_t);

@@ -13,8 +13,8 @@
 namespace spring_mass {
 
 //! [bed]
-/// A bed of glass marbles that have just settled into a heap as wide as its box: each touches two others on
-/// average. The state after some hundred steps; no longer a lattice.
+/// A bed of glass marbles that settles into a heap as wide as its box: each touches about two others while it
+/// is measured. The state after some hundred steps; no longer a lattice.
 struct Bed {
     Material material;
     Box box;
@@ -26,12 +26,12 @@ inline Bed make_bed(std::uint32_t n, int settling_steps) {
     Scene scene = find_scene(all_scenes(), "drop");
     Bed bed;
     float spacing_m = 0;
-    bed.position = fill_block({0, 0, 0}, {0.4f, 0.4f, 0.4f}, n, 7, 0.2f, spacing_m);
-    bed.material = make_material(scene, spacing_m);
+    bed.position = fill_block({0, 0, 0}, {0.4f, 0.4f, 0.4f}, n, 7, 0.1f, spacing_m);
+    bed.material = make_material(scene, 1.04f * spacing_m);  // some touch from the start
     bed.box = {{0, 0, 0}, {0.4f, 0.8f, 0.4f}};
     bed.dt_s = kStepInLimits * time_step_limit_s(bed.material);
     std::mt19937 random(7);
-    std::uniform_real_distribution<float> speed(-0.3f, 0.3f);  // m/s
+    std::uniform_real_distribution<float> speed(-0.1f, 0.1f);  // m/s
     for (std::uint32_t i = 0; i < n; ++i)
         bed.velocity.push_back(make_float4(speed(random), speed(random), speed(random), 0));
     Marbles marbles(bed.material, bed.box, bed.position, bed.velocity);

@@ -159,14 +159,14 @@ inline void study_skin(course::Study& study) {
     course::on_device(study);
     const std::vector<float> skins =
         study.quick ? std::vector<float>{0.05f, 0.2f, 0.4f, 0.8f}
-                    : std::vector<float>{0, 0.05f, 0.1f, 0.2f, 0.3f, 0.4f, 0.6f, 0.8f, 1};
+                    : std::vector<float>{0.03f, 0.06f, 0.1f, 0.2f, 0.3f, 0.4f, 0.6f, 0.8f};
     const std::vector<std::string> scenes{"drop", "dam_break"};
     study.expect(int(scenes.size() * skins.size()));
     for (const std::string& name : scenes)
         for (const float skin : skins) {
             Settings settings;
             settings.scene = find_scene(all_scenes(), name);
-            settings.particles = study.quick ? 2000 : 16384;
+            settings.particles = study.quick ? 2000 : 8192;
             settings.skin = skin;
             Start start = make_start(settings);
             // 0.3 s: the block has hit the floor, or is on its way to the other wall.

@@ -102,8 +102,6 @@ TEST_CASE("the reference follows LAMMPS's golden run for 1000 steps") {
     // times as large in 1000 steps. (After 2000 chaos has made it as large as a marble.)
     CHECK(distance(marbles.position, after.position) < 1e-9);
     CHECK(distance(marbles.velocity, after.velocity) < 1e-9);
-    MESSAGE("position off by " << distance(marbles.position, after.position) << ", velocity by "
-                               << distance(marbles.velocity, after.velocity));
 }
 
 TEST_CASE("the kernels follow LAMMPS's golden run for 250 steps") {
@@ -127,8 +125,6 @@ TEST_CASE("the kernels follow LAMMPS's golden run for 250 steps") {
     }
     const double x_bound = 3 * distance(rounded.position, after.position),
                  v_bound = 3 * distance(rounded.velocity, after.velocity);
-    MESSAGE("position off by " << distance(x, after.position) << " of " << x_bound << ", velocity by "
-                               << distance(v, after.velocity) << " of " << v_bound);
     CHECK(distance(x, after.position) < x_bound);
     CHECK(distance(v, after.velocity) < v_bound);
     CHECK(x_bound < 0.01);  // about 1 % of a diameter: else the comparison would say little
@@ -479,6 +475,7 @@ TEST_CASE("without damping energy stays within the bound of the step, with it it
         bool falls = true;
         for (int step = 0; step < 3000; ++step) {
             marbles.step(float(dt_s));
+            if (step % 7 != 0) continue;  // at any moment of a contact, and not too often: it takes time
             const Summary now = summarize(marbles);
             highest = std::max(highest, now.energy_J());
             if (damping > 0 && now.energy_J() > last * (1 + bound)) falls = false;
@@ -622,9 +619,8 @@ TEST_CASE("what --explain says is what happens: launches and bytes, with every c
         settings.drawing = Drawing::none;
         cudasim::Recording making;
         Start start = make_start(settings);
-        // Lists come in groups of 32 marbles; one word tells that they are outdated.
-        const std::size_t rest = (NeighbourList::words_for(3000) - 3000 * NeighbourList::kCapacity + 1) * 4;
-        CHECK(making.bytes() == 3000 * Marbles::kBytesPerMarble + start.marbles.cell_bytes() + rest);
+        const std::size_t outdated = sizeof(std::uint32_t);  // the word that tells that the lists are
+        CHECK(making.bytes() == 3000 * Marbles::kBytesPerMarble + start.marbles.cell_bytes() + outdated);
         for (int step = 0; step < 20; ++step) {
             const std::uint32_t lists = start.marbles.lists_made();
             cudasim::Recording recording;
@@ -647,6 +643,49 @@ TEST_CASE("what --explain says is what happens: launches and bytes, with every c
         CHECK((text.find("left out: drag") != std::string::npos) == !(terms & 4));
     }
 #endif
+}
+
+TEST_CASE("a term that is left out is not multiplied by zero: NaN in its numbers changes no bit") {
+    const double edge = 5;
+    const Points points = random_cloud(300, edge, 2, 31);
+    Material material = in_float({1, 2, 50, 3, 0, 0, 0, 0, {0, -2, 0}});
+    const Box box = in_box(glm::dvec3(0), glm::dvec3(edge));
+    const Marbles marbles(material, box, in_float4(points.position), in_float4(points.velocity));
+    const std::uint32_t n = marbles.size();
+    course::DeviceBuffer<float4> velocity(n), acceleration(n);
+    const auto pass = [&] {
+        return ContactPass{velocity.data(),
+                           acceleration.data(),
+                           marbles.position(),
+                           marbles.velocity(),
+                           marbles.list(),
+                           material,
+                           box,
+                           n};
+    };
+    const auto finite = [](const std::vector<float4>& a) {
+        return std::all_of(a.begin(), a.end(), [](float4 p) { return std::isfinite(p.x + p.y + p.z); });
+    };
+    contact_kernel<false, false, false><<<grid::blocks_for(n, 64), 64>>>(pass(), 0.01f);
+    CUDA_CHECK(cudaGetLastError());
+    const auto a = acceleration.download(), v = velocity.download();
+    CHECK(finite(a));
+    material.tangential_damping_per_s = material.friction = material.attraction_N_per_m =
+        material.drag_per_s = std::nanf("");
+    contact_kernel<false, false, false><<<grid::blocks_for(n, 64), 64>>>(pass(), 0.01f);
+    CUDA_CHECK(cudaGetLastError());
+    course::check_equal(acceleration.download(), a, "acceleration");
+    course::check_equal(velocity.download(), v, "velocity");
+    // The probe works: each kernel that has one of the terms is poisoned by it.
+    contact_kernel<true, false, false><<<grid::blocks_for(n, 64), 64>>>(pass(), 0.01f);
+    CUDA_CHECK(cudaGetLastError());
+    CHECK_FALSE(finite(acceleration.download()));
+    contact_kernel<false, true, false><<<grid::blocks_for(n, 64), 64>>>(pass(), 0.01f);
+    CUDA_CHECK(cudaGetLastError());
+    CHECK_FALSE(finite(acceleration.download()));
+    contact_kernel<false, false, true><<<grid::blocks_for(n, 64), 64>>>(pass(), 0.01f);
+    CUDA_CHECK(cudaGetLastError());
+    CHECK_FALSE(finite(velocity.download()));
 }
 
 TEST_CASE("marbles are drawn, and no OpenGL object is left behind") {
