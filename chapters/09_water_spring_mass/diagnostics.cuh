@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "04_parallel_patterns/reduce.cuh"
+#include "09_water_spring_mass/by_number.cuh"
 #include "09_water_spring_mass/limits.h"
 #include "09_water_spring_mass/marbles.cuh"
 #include "common/errors.h"
@@ -90,16 +91,6 @@ struct SummariesOfOne {
     }
 };
 //! [Summing]
-
-/// Values by particle number, whatever order the marbles are kept in.
-template <class T>
-std::vector<T> by_id(const Marbles& marbles, const course::DeviceBuffer<T>& buffer) {
-    const std::vector<T> values = buffer.download();
-    const std::vector<std::uint32_t> ids = marbles.ids().download();
-    std::vector<T> sorted(values.size());
-    for (std::size_t k = 0; k < ids.size(); ++k) sorted[ids[k]] = values[k];
-    return sorted;
-}
 
 /// Makes summaries, again and again, in memory made once.
 class Summarizer {

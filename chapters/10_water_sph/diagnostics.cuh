@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "04_parallel_patterns/reduce.cuh"
+#include "09_water_spring_mass/by_number.cuh"
 #include "10_water_sph/water.cuh"
 #include "common/errors.h"
 
@@ -70,15 +71,7 @@ struct SummariesOfOne {
 };
 //! [Summing]
 
-/// Values by particle number, whatever order the water keeps them in. AnyWater: Water or PbfWater.
-template <class AnyWater, class T>
-std::vector<T> by_id(const AnyWater& water, const course::DeviceBuffer<T>& buffer) {
-    const std::vector<T> values = buffer.download();
-    const std::vector<std::uint32_t> ids = water.ids().download();
-    std::vector<T> sorted(values.size());
-    for (std::size_t k = 0; k < ids.size(); ++k) sorted[ids[k]] = values[k];
-    return sorted;
-}
+using spring_mass::by_id;
 
 /// Makes summaries, again and again, in memory made once.
 class Summarizer {

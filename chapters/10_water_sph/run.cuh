@@ -163,24 +163,6 @@ inline std::string explain(const Settings& settings, const PbfStart& start) {
     return text + explain_drawing(settings);
 }
 
-//! [state_hash]
-/// 64-bit FNV-1a hash of all positions and velocities, by particle number. Equal states have equal hashes;
-/// one different bit anywhere gives another.
-template <class AnyWater>
-std::uint64_t state_hash(const AnyWater& water) {
-    const std::vector<float4> x = by_id(water, water.positions()), v = by_id(water, water.velocities());
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    const auto add = [&hash](float4 value) {
-        unsigned char bytes[sizeof value];
-        __builtin_memcpy(bytes, &value, sizeof value);
-        for (unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
-    };
-    for (std::uint32_t i = 0; i < water.size(); ++i) {
-        add(x[i]);
-        add(v[i]);
-    }
-    return hash;
-}
-//! [state_hash]
+using spring_mass::state_hash;
 
 }  // namespace sph

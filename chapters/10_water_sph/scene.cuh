@@ -1,13 +1,12 @@
 /// @file
 /// The scenes of this chapter: a tank, a block of water in it, and how stiff and how viscous the water is.
 #pragma once
-#include <Random123/philox.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "09_water_spring_mass/scene.cuh"
 #include "10_water_sph/sph.cuh"
 #include "common/errors.h"
 
@@ -37,38 +36,15 @@ inline const Scene& find_scene(const std::vector<Scene>& scenes, const std::stri
     throw course::BadInput("there is no scene '" + name + "'");
 }
 
-//! [fill_block]
-/// Exactly `particles` points on a cubic lattice, layer by layer from the floor of the block. Each is moved
-/// by up to a twentieth of the spacing: a perfect lattice would collapse in perfect rows, which no water
-/// does.
+constexpr float kJitter = 0.05f;  ///< in spacings: a twentieth
+
+/// Chapter 09's block of particles: exactly so many on a lattice, each moved a little.
 /// @param spacing_m  out: the lattice's spacing, from which mass and support radius follow
 inline std::vector<float4> fill_block(const Scene& scene, std::uint32_t particles, std::uint64_t seed,
                                       float& spacing_m) {
-    const float3 size = scene.block_size_m;
-    const double volume = double(size.x) * size.y * size.z;
-    std::uint32_t nx = std::max(1, int(std::lround(size.x / std::cbrt(volume / particles)))), nz;
-    for (;; ++nx) {  // few particles can round to a tower far above the block: then take finer columns
-        spacing_m = size.x / nx;
-        nz = std::max(1, int(std::lround(size.z / spacing_m)));
-        const std::uint32_t layers = (particles + nx * nz - 1) / (nx * nz);
-        if (layers * spacing_m < 1.1f * size.y) break;
-    }
-    std::vector<float4> position;
-    position.reserve(particles);
-    for (std::uint32_t i = 0; i < particles; ++i) {
-        const auto random =
-            r123::Philox4x32()({{i, 0, 0, 0}}, {{std::uint32_t(seed), std::uint32_t(seed >> 32)}});
-        const auto place = [&](float low, std::uint32_t index, std::uint32_t bits) {
-            const float jitter = 0.05f * (bits * 0x1p-31f - 1.0f);
-            return low + (index + 0.5f + jitter) * spacing_m;
-        };
-        position.push_back(make_float4(place(scene.block_low_m.x, i % nx, random[0]),
-                                       place(scene.block_low_m.y, i / (nx * nz), random[1]),
-                                       place(scene.block_low_m.z, i / nx % nz, random[2]), 0.0f));
-    }
-    return position;
+    return spring_mass::fill_block(scene.block_low_m, scene.block_size_m, particles, seed, kJitter,
+                                   spacing_m);
 }
-//! [fill_block]
 
 /// Numbers that make a fluid of a scene; each has the value the scenes were tuned for.
 struct FluidChoice {
