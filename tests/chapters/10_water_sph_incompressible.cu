@@ -338,6 +338,11 @@ TEST_CASE("position based fluids: extreme cases end in a right answer or in a se
     CHECK(says(made({middle}, kUnitBox, {-1}), "tolerance"));
     CHECK(says(made({middle}, kUnitBox, {0.01f, -1}), "corrections"));
     CHECK(says(made({middle}, kUnitBox, {0.01f, 50, kInfinity}), "kept"));
+    Box sticky_floor = kUnitBox, ring = kUnitBox;
+    sticky_floor.wall[1] = sph::Wall::no_slip;
+    ring.wall[0] = sph::Wall::periodic;
+    CHECK(says(made({middle}, sticky_floor, {}), "glides"));
+    CHECK(says(made({middle}, ring, {}), "glides"));
     CHECK(made({middle}, kUnitBox, {}).empty());
 
     // All in one cell, with the mass of the space they have: as many corrections as are allowed, no crash.
@@ -365,9 +370,12 @@ TEST_CASE("position based fluids: what --explain says is what happens; the equat
         settings.drawing = sph::Drawing::none;
         cudasim::Recording making;
         sph::PbfStart start = sph::make_pbf_start(settings);
-        const std::size_t summaries = (settings.particles + 255) / 256 * sizeof(sph::PbfSummary);
-        CHECK(making.bytes() ==
-              settings.particles * PbfWater::bytes_per_particle() + start.water.cell_bytes() + summaries);
+        CHECK(start.water.is_viscous() == (viscosity > 0));
+        CHECK(making.bytes() == settings.particles * PbfWater::bytes_per_particle(viscosity > 0) +
+                                    start.water.cell_bytes() + start.water.summary_bytes());
+        // A summary of each of 16 * 256 particles, and the one of all.
+        CHECK(start.water.summary_bytes() ==
+              (settings.particles / 4096 + (settings.particles % 4096 != 0) + 1) * sizeof(sph::PbfSummary));
         cudasim::Recording recording;
         start.water.step(start.dt_s);
         CHECK(recording.allocations() == 0);
@@ -385,7 +393,7 @@ TEST_CASE("position based fluids: what --explain says is what happens; the equat
         cudasim::Recording plain_step;
         plain.water.step(plain.dt_s);
         for (const char* kernel :
-             {"predict_kernel", "constraint_kernel", "shift_kernel", "pbf_summary_kernel"})
+             {"predict_kernel", "constraint_kernel", "shift_kernel", "reduce_shared_kernel"})
             CHECK_MESSAGE(plain_step.count(kernel) == 0, kernel);
     }
 #endif
