@@ -225,30 +225,27 @@ inline __global__ void shift_kernel(grid::Columns<float> next, float4* position,
 /// What a step has to know of all particles.
 struct PbfSummary {
     double compression_sum;  ///< of rho / rho0 - 1 where above 0
-    float highest_compression, highest_speed_squared;
+    float highest_compression;
 };
 
 /// Two summaries as one, for chapter 04's tree. Sums are in double and in a fixed order, so that every run
 /// takes the same number of corrections.
 struct PbfSumming {
     using Value = PbfSummary;
-    static __host__ __device__ PbfSummary nothing() { return {0, 0, 0}; }
+    static __host__ __device__ PbfSummary nothing() { return {0, 0}; }
     static __host__ __device__ PbfSummary combine(const PbfSummary& a, const PbfSummary& b) {
-        return {a.compression_sum + b.compression_sum, fmaxf(a.highest_compression, b.highest_compression),
-                fmaxf(a.highest_speed_squared, b.highest_speed_squared)};
+        return {a.compression_sum + b.compression_sum, fmaxf(a.highest_compression, b.highest_compression)};
     }
 };
 
 /// The particles as an array of summaries of one particle each, none of which is ever stored.
 struct PbfSummariesOfOne {
     const float* density;
-    const float4* velocity;
     float rest_density_kg_per_m3;
 
     __device__ PbfSummary operator[](std::uint32_t i) const {
         const float compression = fmaxf(density[i] / rest_density_kg_per_m3 - 1, 0.0f);
-        const float4 v = velocity[i];
-        return {compression, compression, v.x * v.x + v.y * v.y + v.z * v.z};
+        return {compression, compression};
     }
 };
 //! [PbfSumming]

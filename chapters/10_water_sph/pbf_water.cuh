@@ -104,8 +104,6 @@ class PbfWater {
     }
     //! [pbf_step]
 
-    /// The largest step that this water should take now.
-    float step_limit_s() const { return pbf_step_limit_s(fluid_, choice_.tolerance, highest_speed_m_per_s_); }
     const PbfChoice& choice() const { return choice_; }
     const PbfReport& report() const { return report_; }
     /// Pressure of each particle in Pa, as the last step has used it: the last change was found, but it moves
@@ -197,11 +195,10 @@ class PbfWater {
     //! [pbf_correct]
 
     void summarize() {
-        summarize_(PbfSummariesOfOne{density_.data(), velocity_.data(), fluid_.rest_density_kg_per_m3}, n_);
+        summarize_(PbfSummariesOfOne{density_.data(), fluid_.rest_density_kg_per_m3}, n_);
         const PbfSummary all = summarize_.download();
         report_.mean_compression = all.compression_sum / n_;
         report_.highest_compression = all.highest_compression;
-        highest_speed_m_per_s_ = std::sqrt(all.highest_speed_squared);
     }
 
     /// Brings particles of a cell together in memory, with what they keep from step to step, and makes
@@ -238,7 +235,7 @@ class PbfWater {
     course::DeviceBuffer<float> density_, multiplier_, change_;
     course::DeviceBuffer<std::uint32_t> id_, sorted_id_;
     patterns::TreeReduction<PbfSumming> summarize_;
-    float least_norm_ = 0, last_dt_s_ = 0, highest_speed_m_per_s_ = 0;
+    float least_norm_ = 0, last_dt_s_ = 0;
     PbfReport report_;
 };
 
