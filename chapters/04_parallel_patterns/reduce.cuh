@@ -105,7 +105,9 @@ class TreeReduction {
   public:
     using Value = typename Operation::Value;
 
-    explicit TreeReduction(std::uint32_t max_n) : of_blocks_(walking_blocks(max_n)), result_(1) {}
+    /// @param max_blocks  fewer blocks walk farther: less to do for the trees, and less of the GPU in use
+    explicit TreeReduction(std::uint32_t max_n, std::uint32_t max_blocks = kMaxBlocks)
+        : max_blocks_(max_blocks), of_blocks_(blocks_of(max_n)), result_(1) {}
 
     /// The result is on the device, at result(); nobody waits.
     template <class Values>
@@ -114,7 +116,7 @@ class TreeReduction {
             result_.upload({Operation::nothing()});
             return;
         }
-        const std::uint32_t blocks = walking_blocks(n);
+        const std::uint32_t blocks = blocks_of(n);
         reduce_shared_kernel<Operation><<<blocks, kThreads>>>(of_blocks_.data(), values, n);
         CUDA_CHECK(cudaGetLastError());
         const Value* of_blocks = of_blocks_.data();
@@ -123,8 +125,14 @@ class TreeReduction {
     }
     const Value* result() const { return result_.data(); }
     Value download() const { return result_.download()[0]; }
+    std::size_t bytes() const { return of_blocks_.bytes() + result_.bytes(); }
 
   private:
+    std::uint32_t blocks_of(std::uint32_t n) const {
+        return walking_blocks(n) < max_blocks_ ? walking_blocks(n) : max_blocks_;
+    }
+
+    std::uint32_t max_blocks_;
     course::DeviceBuffer<Value> of_blocks_, result_;
 };
 //! [TreeReduction]

@@ -234,7 +234,7 @@ template <class AnyWater>
 void run(course::Program& program, const Choices& choices, const Settings& settings,
          StartOf<AnyWater> (*make)(const Settings&)) {
     // Start on the host, state on the device, which on the simulator is the host's memory too.
-    const std::size_t each = std::max(Water::bytes_per_particle(true), PbfWater::bytes_per_particle());
+    const std::size_t each = std::max(Water::bytes_per_particle(true), PbfWater::bytes_per_particle(true));
     course::require_memory(double(settings.particles) * (2 * sizeof(float4) + each));
     StartOf<AnyWater> start = make(settings);
     if (program.options.explain) {

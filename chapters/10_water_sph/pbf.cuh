@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
+#include "04_parallel_patterns/reduce.cuh"
 #include "10_water_sph/sph.cuh"
 
 namespace sph {
@@ -56,61 +57,70 @@ inline __host__ __device__ void stop_at_walls(const Box& box, glm::vec3& x, glm:
     }
 }
 
+/// Where particle i goes: into the columns that neighbours will read, and into the array of float4 that the
+/// next sort, and everybody else, reads.
+inline __host__ __device__ void set_place(grid::Columns<float> next, float4* position, std::uint32_t i,
+                                          glm::vec3 x) {
+    next.x[i] = x.x;
+    next.y[i] = x.y;
+    next.z[i] = x.z;
+    position[i] = make_float4(x.x, x.y, x.z, 0.0f);
+}
+
 //! [predict_kernel]
 /// One thread per particle: where would it go by its velocity, gravity, viscosity, and the part `kept` of the
 /// last step's pressures? gravity_dt_s: the time that accelerations act, from the middle of the last step to
 /// the middle of this one.
+/// @param before    places of all
+/// @param moves     velocities of all, which are not read, and need not exist, without viscosity
+/// @param velocity  of this particle: changed
 template <bool kViscous>
-__global__ void predict_kernel(float4* next_position, float4* next_velocity, const float4* position,
-                               const float4* velocity, const float* multiplier, float kept, float dt_s,
-                               float gravity_dt_s, grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid,
-                               Box box, std::uint32_t n) {
+__global__ void predict_kernel(grid::Columns<float> next, float4* position, float4* velocity,
+                               grid::Columns<const float> before, grid::Columns<const float> moves,
+                               const float* multiplier, float kept, float dt_s, float gravity_dt_s,
+                               grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid, Box box,
+                               std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
-    glm::vec3 x = grid::xyz(position[i]), v = grid::xyz(velocity[i]);
-    const float h = fluid.support_m, per_h = 1.0f / h, own = multiplier[i];
-    glm::vec3 pressure(0), viscosity(0);
+    glm::vec3 x = before[i], v = grid::xyz(velocity[i]);
+    const float rho0 = fluid.rest_density_kg_per_m3;
+    const float h = fluid.support_m, per_h = 1.0f / h, own = multiplier[i], kept_per_dt = kept / dt_s;
+    const float friction = gravity_dt_s * fluid.viscosity_m2_per_s * rho0 * per_h;
+    glm::vec3 sum(0);        // of both terms, but for the factor they share: mass / (rho0^2 h^4)
     if (grid::is_finite(x))  // else it sits in the limbo; the check of the state will report it
         for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
             const glm::vec3 image_v = sign * v;
+            grid::LaneSum<float> sum_x, sum_y, sum_z;
             grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
                 const std::uint32_t first = ranges.cell_first[first_cell];
                 const std::uint32_t count = ranges.cell_last[last_cell] - first;
-                const float4 *x_row = position + first, *v_row = velocity + first;
-                const float* multiplier_row = multiplier + first;
-                float px = 0, py = 0, pz = 0, vx = 0, vy = 0, vz = 0;
-#pragma omp simd reduction(+ : px, py, pz, vx, vy, vz)
-                for (std::uint32_t k = 0; k < count; ++k) {
-                    const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y,
-                                dz = image.z - x_row[k].z;
+                grid::for_each_in_lanes(first, count, [&](int lane, std::ptrdiff_t k, bool mine) {
+                    const float dx = image.x - before.x[k], dy = image.y - before.y[k],
+                                dz = image.z - before.z[k];
                     const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
                     const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
-                    const float push = (own + multiplier_row[k]) * spiky_slope(q) * per_r;
-                    px += push * dx;
-                    py += push * dy;
-                    pz += push * dz;
+                    const float push = kept_per_dt * (own + multiplier[k]) * spiky_slope(q) * per_r;
+                    float ax = push * dx, ay = push * dy, az = push * dz;
                     if constexpr (kViscous) {
-                        const float drag = viscosity_laplacian(q);
-                        vx += drag * (v_row[k].x - image_v.x);
-                        vy += drag * (v_row[k].y - image_v.y);
-                        vz += drag * (v_row[k].z - image_v.z);
+                        const float drag = friction * viscosity_laplacian(q);
+                        ax += drag * (moves.x[k] - image_v.x);
+                        ay += drag * (moves.y[k] - image_v.y);
+                        az += drag * (moves.z[k] - image_v.z);
                     }
-                }
-                pressure += sign * glm::vec3(px, py, pz);
-                viscosity += sign * glm::vec3(vx, vy, vz);
+                    sum_x.lane[lane] += mine ? ax : 0.0f;
+                    sum_y.lane[lane] += mine ? ay : 0.0f;
+                    sum_z.lane[lane] += mine ? az : 0.0f;
+                });
             });
+            sum += sign * glm::vec3(sum_x.total(), sum_y.total(), sum_z.total());
         });
-    const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
-    const float per_h4 = per_h * per_h * per_h * per_h;
     const float3 g = fluid.gravity_m_per_s2;
-    v += gravity_dt_s * glm::vec3(g.x, g.y, g.z);
-    if constexpr (kViscous)
-        v += gravity_dt_s * fluid.viscosity_m2_per_s * (m / rho0) * per_h4 * per_h * viscosity;
-    v += kept * m / (rho0 * rho0) * per_h4 / dt_s * pressure;
+    v += gravity_dt_s * glm::vec3(g.x, g.y, g.z) +
+         fluid.mass_kg / (rho0 * rho0) * per_h * per_h * per_h * per_h * sum;
     x += dt_s * v;
     stop_at_walls(box, x, v);
-    next_position[i] = make_float4(x.x, x.y, x.z, 0.0f);
-    next_velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
+    set_place(next, position, i, x);
+    velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
 }
 //! [predict_kernel]
 
@@ -119,11 +129,12 @@ __global__ void predict_kernel(float4* next_position, float4* next_velocity, con
 /// particle's multiplier has to change for the density to come to rest. Neighbours are looked for in the
 /// cells of the step's start: one that has come from farther is missed until the next step.
 inline __global__ void constraint_kernel(float* density, float* multiplier, float* change, float kept,
-                                         const float4* position, float least_norm, grid::CellRanges ranges,
-                                         grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+                                         grid::Columns<const float> position, float least_norm,
+                                         grid::CellRanges ranges, grid::CellGrid cells, Fluid fluid, Box box,
+                                         std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
-    const glm::vec3 x = grid::xyz(position[i]);
+    const glm::vec3 x = position[i];
     if (!grid::is_finite(x)) {
         density[i] = x.x - x.x;
         multiplier[i] = change[i] = 0;
@@ -133,27 +144,27 @@ inline __global__ void constraint_kernel(float* density, float* multiplier, floa
     float sum = 0, squares = 0;  // of h^3 W; of (h^4 grad W)^2
     glm::vec3 gradient(0);
     for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+        grid::LaneSum<float> weights, slopes_squared, gradient_x, gradient_y, gradient_z;
         grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
             const std::uint32_t first = ranges.cell_first[first_cell];
             const std::uint32_t count = ranges.cell_last[last_cell] - first;
-            const float4* x_row = position + first;
-            float row = 0, gx = 0, gy = 0, gz = 0, gg = 0;
-#pragma omp simd reduction(+ : row, gx, gy, gz, gg)
-            for (std::uint32_t k = 0; k < count; ++k) {
-                const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y, dz = image.z - x_row[k].z;
+            grid::for_each_in_lanes(first, count, [&](int lane, std::ptrdiff_t k, bool mine) {
+                const float dx = image.x - position.x[k], dy = image.y - position.y[k],
+                            dz = image.z - position.z[k];
                 const float r = sqrtf(dx * dx + dy * dy + dz * dz), q = r * per_h;
-                const float slope = r > 0.0f ? spiky_slope(q) : 0.0f;
                 const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
-                row += poly6(q * q);
-                gx += slope * per_r * dx;
-                gy += slope * per_r * dy;
-                gz += slope * per_r * dz;
-                gg += slope * slope;
-            }
-            sum += row;
-            squares += gg;
-            gradient += sign * glm::vec3(gx, gy, gz);
+                const float slope = r > 0.0f ? spiky_slope(q) : 0.0f, slope_per_r = slope * per_r;
+                const float weight = poly6(q * q);
+                weights.lane[lane] += mine ? weight : 0.0f;
+                slopes_squared.lane[lane] += mine ? slope * slope : 0.0f;
+                gradient_x.lane[lane] += mine ? slope_per_r * dx : 0.0f;
+                gradient_y.lane[lane] += mine ? slope_per_r * dy : 0.0f;
+                gradient_z.lane[lane] += mine ? slope_per_r * dz : 0.0f;
+            });
         });
+        sum += weights.total();
+        squares += slopes_squared.total();
+        gradient += sign * glm::vec3(gradient_x.total(), gradient_y.total(), gradient_z.total());
     });
     const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
     const float per_h4 = per_h * per_h * per_h * per_h;
@@ -172,71 +183,71 @@ inline __global__ void constraint_kernel(float* density, float* multiplier, floa
 /// One thread per particle: moves it by the changes of the multipliers, its own and its neighbours'. The pair
 /// terms are those of force_kernel, as symmetric, so momentum stays. per_dt_per_s: 1 / dt, and 0 when places
 /// are to be put right without giving anybody velocity.
-inline __global__ void shift_kernel(float4* next_position, float4* velocity, const float4* position,
-                                    const float* change, float per_dt_per_s, grid::CellRanges ranges,
-                                    grid::CellGrid cells, Fluid fluid, Box box, std::uint32_t n) {
+inline __global__ void shift_kernel(grid::Columns<float> next, float4* position, float4* velocity,
+                                    grid::Columns<const float> before, const float* change,
+                                    float per_dt_per_s, grid::CellRanges ranges, grid::CellGrid cells,
+                                    Fluid fluid, Box box, std::uint32_t n) {
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n) return;
-    glm::vec3 x = grid::xyz(position[i]), v = grid::xyz(velocity[i]);
+    glm::vec3 x = before[i], v = grid::xyz(velocity[i]);
     const float h = fluid.support_m, per_h = 1.0f / h, own = change[i];
     glm::vec3 push_sum(0);
     if (grid::is_finite(x))
         for_each_image(box, x, h, [&](glm::vec3 image, glm::vec3 sign) {
+            grid::LaneSum<float> sum_x, sum_y, sum_z;
             grid::for_each_row(cells, image, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
                 const std::uint32_t first = ranges.cell_first[first_cell];
                 const std::uint32_t count = ranges.cell_last[last_cell] - first;
-                const float4* x_row = position + first;
-                const float* change_row = change + first;
-                float px = 0, py = 0, pz = 0;
-#pragma omp simd reduction(+ : px, py, pz)
-                for (std::uint32_t k = 0; k < count; ++k) {
-                    const float dx = image.x - x_row[k].x, dy = image.y - x_row[k].y,
-                                dz = image.z - x_row[k].z;
+                grid::for_each_in_lanes(first, count, [&](int lane, std::ptrdiff_t k, bool mine) {
+                    const float dx = image.x - before.x[k], dy = image.y - before.y[k],
+                                dz = image.z - before.z[k];
                     const float r = sqrtf(dx * dx + dy * dy + dz * dz);
                     const float per_r = r > 0.0f ? 1.0f / r : 0.0f;
-                    const float push = (own + change_row[k]) * spiky_slope(r * per_h) * per_r;
-                    px += push * dx;
-                    py += push * dy;
-                    pz += push * dz;
-                }
-                push_sum += sign * glm::vec3(px, py, pz);
+                    const float push = (own + change[k]) * spiky_slope(r * per_h) * per_r;
+                    sum_x.lane[lane] += mine ? push * dx : 0.0f;
+                    sum_y.lane[lane] += mine ? push * dy : 0.0f;
+                    sum_z.lane[lane] += mine ? push * dz : 0.0f;
+                });
             });
+            push_sum += sign * glm::vec3(sum_x.total(), sum_y.total(), sum_z.total());
         });
     const float m = fluid.mass_kg, rho0 = fluid.rest_density_kg_per_m3;
     const glm::vec3 shift = m / (rho0 * rho0) * per_h * per_h * per_h * per_h * push_sum;
     x += shift;
     v += per_dt_per_s * shift;
     stop_at_walls(box, x, v);
-    next_position[i] = make_float4(x.x, x.y, x.z, 0.0f);
+    set_place(next, position, i, x);
     velocity[i] = make_float4(v.x, v.y, v.z, 0.0f);
 }
 //! [shift_kernel]
 
-/// What a step has to know of all particles: sums over a chunk of them, or over all.
+//! [PbfSumming]
+/// What a step has to know of all particles.
 struct PbfSummary {
-    double compression_sum = 0;  ///< of rho / rho0 - 1 where above 0
-    float highest_compression = 0;
-    float highest_speed_squared = 0;
+    double compression_sum;  ///< of rho / rho0 - 1 where above 0
+    float highest_compression;
 };
 
-//! [pbf_summary_kernel]
-/// One thread per chunk of 256 particles; sums in double and in a fixed order, so that every run takes the
-/// same number of corrections.
-inline __global__ void pbf_summary_kernel(PbfSummary* chunks, const float* density, const float4* velocity,
-                                          float rest_density_kg_per_m3, std::uint32_t n) {
-    const std::uint32_t chunk = blockIdx.x * blockDim.x + threadIdx.x;
-    const std::uint32_t first = chunk * 256;
-    if (first >= n) return;
-    PbfSummary sum;
-    for (std::uint32_t i = first; i < min(n, first + 256); ++i) {
-        const float compression = fmaxf(density[i] / rest_density_kg_per_m3 - 1, 0.0f);
-        const float4 v = velocity[i];
-        sum.compression_sum += compression;
-        sum.highest_compression = fmaxf(sum.highest_compression, compression);
-        sum.highest_speed_squared = fmaxf(sum.highest_speed_squared, v.x * v.x + v.y * v.y + v.z * v.z);
+/// Two summaries as one, for chapter 04's tree. Sums are in double and in a fixed order, so that every run
+/// takes the same number of corrections.
+struct PbfSumming {
+    using Value = PbfSummary;
+    static __host__ __device__ PbfSummary nothing() { return {0, 0}; }
+    static __host__ __device__ PbfSummary combine(const PbfSummary& a, const PbfSummary& b) {
+        return {a.compression_sum + b.compression_sum, fmaxf(a.highest_compression, b.highest_compression)};
     }
-    chunks[chunk] = sum;
-}
-//! [pbf_summary_kernel]
+};
+
+/// The particles as an array of summaries of one particle each, none of which is ever stored.
+struct PbfSummariesOfOne {
+    const float* density;
+    float rest_density_kg_per_m3;
+
+    __device__ PbfSummary operator[](std::uint32_t i) const {
+        const float compression = fmaxf(density[i] / rest_density_kg_per_m3 - 1, 0.0f);
+        return {compression, compression};
+    }
+};
+//! [PbfSumming]
 
 }  // namespace sph

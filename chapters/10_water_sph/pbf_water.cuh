@@ -50,14 +50,16 @@ class PbfWater {
           sort_(n_, cells_.cell_count()),
           position_(position),
           velocity_(velocity),
-          other_position_(n_),
-          other_velocity_(n_),
+          sorted_(n_),
+          columns_(n_),
+          next_columns_(n_),
+          velocity_columns_(is_viscous() ? n_ : 0),
           density_(n_),
-          multiplier_(std::vector<float>(n_, 0.0f)),
-          change_(n_),
+          multiplier_(n_, grid::kLanes),
+          change_(n_, grid::kLanes),
           id_(n_),
-          other_id_(n_),
-          chunks_(grid::blocks_for(n_, 256)) {
+          sorted_id_(n_),
+          summarize_(n_, summing_blocks(n_)) {
         // The support in spacings, which the lattice's sum wants, from the mass. Within the usual bounds,
         // since nothing keeps anybody from masses that no lattice has.
         const double spacing_m = std::cbrt(double(fluid.mass_kg) / fluid.rest_density_kg_per_m3);
@@ -67,7 +69,9 @@ class PbfWater {
         for (std::uint32_t i = 0; i < n_; ++i) ids[i] = i;
         id_.upload(ids);
         if (n_ == 0) return;
+        multiplier_.upload(std::vector<float>(n_, 0.0f));
         sort_by_cell();
+        gather(position_, sorted_);  // a step writes all places anew; here there may be nothing to correct
         correct(0, 1);
         multiplier_.upload(std::vector<float>(n_, 0.0f));
     }
@@ -83,24 +87,23 @@ class PbfWater {
         const float kept = choice_.kept * std::fmin(1.0f, ratio * ratio);
         // Velocities live in the middle between two places, as in leapfrog: from one middle to the next.
         const float gravity_dt_s = 0.5f * (last_dt_s_ + dt_s);
-        if (fluid_.viscosity_m2_per_s > 0)
+        const auto before = std::as_const(columns_).columns(),
+                   moves = std::as_const(velocity_columns_).columns();
+        if (is_viscous())
             predict_kernel<true><<<blocks(), kThreads>>>(
-                other_position_.data(), other_velocity_.data(), position_.data(), velocity_.data(),
+                next_columns_.columns(), position_.data(), velocity_.data(), before, moves,
                 multiplier_.data(), kept, dt_s, gravity_dt_s, sort_.ranges(), cells_, fluid_, box_, n_);
         else
             predict_kernel<false><<<blocks(), kThreads>>>(
-                other_position_.data(), other_velocity_.data(), position_.data(), velocity_.data(),
+                next_columns_.columns(), position_.data(), velocity_.data(), before, moves,
                 multiplier_.data(), kept, dt_s, gravity_dt_s, sort_.ranges(), cells_, fluid_, box_, n_);
         CUDA_CHECK(cudaGetLastError());
-        std::swap(position_, other_position_);
-        std::swap(velocity_, other_velocity_);
+        std::swap(columns_, next_columns_);
         correct(1 / dt_s, kept);
         last_dt_s_ = dt_s;
     }
     //! [pbf_step]
 
-    /// The largest step that this water should take now.
-    float step_limit_s() const { return pbf_step_limit_s(fluid_, choice_.tolerance, highest_speed_m_per_s_); }
     const PbfChoice& choice() const { return choice_; }
     const PbfReport& report() const { return report_; }
     /// Pressure of each particle in Pa, as the last step has used it: the last change was found, but it moves
@@ -126,16 +129,31 @@ class PbfWater {
     const Box& box() const { return box_; }
     float least_norm() const { return least_norm_; }
     std::uint32_t cell_count() const { return cells_.cell_count(); }
-    std::size_t cell_bytes() const { return sort_.cell_bytes(); }
+    bool is_viscous() const { return fluid_.viscosity_m2_per_s > 0; }
 
-    /// Bytes of device memory per particle, the grid's cells and the summary (a 16th of a byte) not counted.
-    static constexpr std::size_t bytes_per_particle() {
-        return 2 * 2 * sizeof(float4) + 3 * sizeof(float) + 2 * sizeof(std::uint32_t) +  // state
-               2 * sizeof(std::uint32_t);                                                // cell and order
+    /// Bytes of device memory for each particle.
+    static constexpr std::size_t bytes_per_particle(bool viscous) {
+        return 3 * sizeof(float4) + 2 * sizeof(std::uint32_t) +       // state, and what sorting needs
+               (numbers_per_particle(viscous) + 1) * sizeof(float) +  // what neighbours read; density
+               2 * sizeof(std::uint32_t);                             // cell and order
     }
+    std::size_t bytes_per_particle() const { return bytes_per_particle(is_viscous()); }
+    /// Device memory beyond that: the grid's cells, and the ends of what neighbours read (grid::kLanes).
+    std::size_t cell_bytes() const {
+        return sort_.cell_bytes() +
+               (n_ > 0 ? grid::kLanes * numbers_per_particle(is_viscous()) * sizeof(float) : 0);
+    }
+    /// And for the summary that decides whether there is another correction.
+    std::size_t summary_bytes() const { return summarize_.bytes(); }
 
   private:
     static constexpr std::uint32_t kThreads = 128;
+    /// Places now and next, multiplier and change; the velocity only if there is friction.
+    static constexpr std::size_t numbers_per_particle(bool viscous) { return viscous ? 11 : 8; }
+    /// 16 particles for each thread: a summary is little work, and the tree's barriers are not free.
+    static std::uint32_t summing_blocks(std::uint32_t n) {
+        return grid::blocks_for(n, 16 * patterns::kThreads);
+    }
     std::uint32_t blocks() const { return grid::blocks_for(n_, kThreads); }
 
     static const Fluid& checked(const Fluid& fluid, const Box& box, const PbfChoice& choice,
@@ -145,6 +163,9 @@ class PbfWater {
         check_particles(position, velocity, box);
         if (!(choice.tolerance >= 0)) throw course::BadInput("the tolerance must be 0 or above");
         if (choice.max_corrections < 0) throw course::BadInput("the corrections must be 0 or more");
+        for (const Wall wall : box.wall)
+            if (wall != Wall::slip)
+                throw course::BadInput("position based fluids know only walls that water glides along");
         if (!(choice.kept >= 0 && choice.kept <= 1))
             throw course::BadInput("the part of the pressure that is kept must be from 0 to 1");
         return fluid;
@@ -152,50 +173,43 @@ class PbfWater {
 
     //! [pbf_correct]
     /// Measures the density and corrects the places, until the mean compression is within the tolerance. Once
-    /// at least: a density within the tolerance may be one that the kept pressure has blown apart.
+    /// at least: a density within the tolerance may be one that the kept pressure has blown apart. So nobody
+    /// asks for the mean before the first correction.
     void correct(float per_dt_per_s, float kept) {
         for (report_.corrections = 0;; ++report_.corrections) {
+            const bool is_first = report_.corrections == 0,
+                       is_last = report_.corrections == choice_.max_corrections;
             constraint_kernel<<<blocks(), kThreads>>>(
-                density_.data(), multiplier_.data(), change_.data(), report_.corrections == 0 ? kept : 1.0f,
-                position_.data(), least_norm_, sort_.ranges(), cells_, fluid_, box_, n_);
+                density_.data(), multiplier_.data(), change_.data(), is_first ? kept : 1.0f,
+                std::as_const(columns_).columns(), least_norm_, sort_.ranges(), cells_, fluid_, box_, n_);
             CUDA_CHECK(cudaGetLastError());
-            summarize();
-            if (report_.corrections == choice_.max_corrections ||
-                (report_.corrections > 0 && report_.mean_compression <= choice_.tolerance))
-                return;
-            shift_kernel<<<blocks(), kThreads>>>(other_position_.data(), velocity_.data(), position_.data(),
-                                                 change_.data(), per_dt_per_s, sort_.ranges(), cells_, fluid_,
-                                                 box_, n_);
+            if (!is_first || is_last) summarize();
+            if (is_last || (!is_first && report_.mean_compression <= choice_.tolerance)) return;
+            shift_kernel<<<blocks(), kThreads>>>(next_columns_.columns(), position_.data(), velocity_.data(),
+                                                 std::as_const(columns_).columns(), change_.data(),
+                                                 per_dt_per_s, sort_.ranges(), cells_, fluid_, box_, n_);
             CUDA_CHECK(cudaGetLastError());
-            std::swap(position_, other_position_);
+            std::swap(columns_, next_columns_);
         }
     }
     //! [pbf_correct]
 
     void summarize() {
-        const auto count = std::uint32_t(chunks_.size());
-        pbf_summary_kernel<<<grid::blocks_for(count, 64), 64>>>(
-            chunks_.data(), density_.data(), velocity_.data(), fluid_.rest_density_kg_per_m3, n_);
-        CUDA_CHECK(cudaGetLastError());
-        double sum = 0;
-        float highest = 0, speed_squared = 0;
-        for (const PbfSummary& chunk : chunks_.download()) {
-            sum += chunk.compression_sum;
-            highest = std::fmax(highest, chunk.highest_compression);
-            speed_squared = std::fmax(speed_squared, chunk.highest_speed_squared);
-        }
-        report_.mean_compression = sum / n_;
-        report_.highest_compression = highest;
-        highest_speed_m_per_s_ = std::sqrt(speed_squared);
+        summarize_(PbfSummariesOfOne{density_.data(), fluid_.rest_density_kg_per_m3}, n_);
+        const PbfSummary all = summarize_.download();
+        report_.mean_compression = all.compression_sum / n_;
+        report_.highest_compression = all.highest_compression;
     }
 
-    /// Brings particles of a cell together in memory, with what they keep from step to step.
+    /// Brings particles of a cell together in memory, with what they keep from step to step, and makes
+    /// columns of what their neighbours will read.
     void sort_by_cell() {
         sort_.build(position_.data(), cells_, n_);
-        gather(position_, other_position_);
-        gather(velocity_, other_velocity_);
+        gather_columns(columns_, position_);
+        if (is_viscous()) gather_columns(velocity_columns_, velocity_);
+        gather(velocity_, sorted_);
         gather(multiplier_, change_);
-        gather(id_, other_id_);
+        gather(id_, sorted_id_);
     }
 
     template <class T>
@@ -204,6 +218,10 @@ class PbfWater {
         CUDA_CHECK(cudaGetLastError());
         std::swap(data, sorted);
     }
+    void gather_columns(grid::ColumnBuffer& sorted, const course::DeviceBuffer<float4>& data) {
+        grid::gather_columns_kernel<<<blocks(), kThreads>>>(sorted.columns(), data.data(), sort_.order(), n_);
+        CUDA_CHECK(cudaGetLastError());
+    }
 
     Fluid fluid_;
     Box box_;
@@ -211,11 +229,13 @@ class PbfWater {
     std::uint32_t n_;
     grid::CellGrid cells_;
     grid::CountingSort sort_;
-    course::DeviceBuffer<float4> position_, velocity_, other_position_, other_velocity_;
+    course::DeviceBuffer<float4> position_, velocity_, sorted_;
+    grid::ColumnBuffer columns_, next_columns_,
+        velocity_columns_;  // of positions, now and next; of velocities
     course::DeviceBuffer<float> density_, multiplier_, change_;
-    course::DeviceBuffer<std::uint32_t> id_, other_id_;
-    course::DeviceBuffer<PbfSummary> chunks_;
-    float least_norm_ = 0, last_dt_s_ = 0, highest_speed_m_per_s_ = 0;
+    course::DeviceBuffer<std::uint32_t> id_, sorted_id_;
+    patterns::TreeReduction<PbfSumming> summarize_;
+    float least_norm_ = 0, last_dt_s_ = 0;
     PbfReport report_;
 };
 

@@ -98,11 +98,12 @@ inline std::vector<std::pair<std::string, int>> pbf_launches_per_step(const Sett
             {"scan_chunks_kernel", levels},
             {"scatter_kernel", 1},
             {"sort_cells_kernel", 1},
-            {"grid::gather_kernel", 4},
+            {"grid::gather_columns_kernel", settings.choice.viscosity > 0 ? 2 : 1},
+            {"grid::gather_kernel", 3},
             {settings.choice.viscosity > 0 ? "predict_kernel<true>" : "predict_kernel<false>", 1},
             {"constraint_kernel", corrections + 1},
-            {"pbf_summary_kernel", corrections + 1},
-            {"shift_kernel", corrections}};
+            {"shift_kernel", corrections},
+            {"reduce_shared_kernel", 2 * std::max(1, corrections)}};
 }
 
 /// What --explain says of the picture, whatever the water.
@@ -152,10 +153,13 @@ inline std::string explain(const Settings& settings, const Start& start) {
 inline std::string explain(const Settings& settings, const PbfStart& start) {
     std::string text =
         explain_cost(settings, start.water, pbf_launches_per_step(settings, start.water, 1)) +
-        "each further correction: 3 kernels: constraint_kernel, pbf_summary_kernel, shift_kernel; at most " +
-        std::to_string(settings.pbf.max_corrections) + " corrections a step\n";
+        "each further correction: 4 kernels: shift_kernel, constraint_kernel, reduce_shared_kernel x 2; at "
+        "most " +
+        std::to_string(settings.pbf.max_corrections) + " corrections a step, whose sums take " +
+        std::to_string(start.water.summary_bytes()) + " bytes in all\n";
     if (settings.choice.viscosity == 0)
-        text += "left out: the viscosity term (compiled out of predict_kernel)\n";
+        text +=
+            "left out: the viscosity term (compiled out of predict_kernel), and the columns of velocities\n";
     text += "left out: equations of state, and with them density_kernel, force_kernel and sound\n";
     text +=
         "left out: a pass for the bounds of the particles (the tank does not move, so neither does the "

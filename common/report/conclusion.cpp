@@ -135,6 +135,28 @@ std::string alone_conclusion(const Line& line) {
            floors({line});
 }
 
+/// Of two methods: how many times as long the first takes as the second to get an error of at most 1 and 3 of
+/// each decade. Only where one of them has a point above: beyond, both would stand with their fastest run.
+std::string ratios(const Line& first, const Line& second, double worst, double best) {
+    const auto has_above = [](const Line& line, double error) {
+        const std::vector<Point> points = best_points(line);
+        return !points.empty() && points.front().error >= error;
+    };
+    std::string text;
+    for (int k = int(std::ceil(std::log10(worst))); k >= int(std::floor(std::log10(best))); --k)
+        for (const int digit : {3, 1}) {
+            const double error = digit * std::pow(10.0, k);
+            const double ratio = seconds_for_error(first, error) / seconds_for_error(second, error);
+            if (!(has_above(first, error) || has_above(second, error)) || !(ratio > 0 && ratio < kInfinity))
+                continue;
+            text += (text.empty() ? "" : ", ") + times(ratio) + " at " +
+                    (digit == 1 ? power_of_ten(k) : format_number(error));
+        }
+    if (text.empty()) return "";
+    return "Time of " + first.method + " / time of " + second.method + ", for at most that error: " + text +
+           ". ";
+}
+
 std::string error_conclusion(const StudyData& study) {
     double best = kInfinity, worst = 0;
     for (const Line& line : study.lines)
@@ -178,6 +200,7 @@ std::string error_conclusion(const StudyData& study) {
         k = end + 1;
     }
     text += "The cheapest, by error: " + stretches + ". ";
+    if (study.lines.size() == 2) text += ratios(study.lines[0], study.lines[1], worst, best);
 
     std::vector<std::string> alone;
     for (const Entry& entry : decades.back().ranked) alone.push_back(entry.method);

@@ -71,6 +71,23 @@ TEST_CASE("reduction: the formulas are exact") {
 #endif
 }
 
+TEST_CASE("reduction: with fewer blocks the same sum, and less for the trees to do") {
+    require_counting();
+#ifdef CUDASIM_COUNT_ACCESSES
+    const std::uint32_t n = 5000;
+    const course::DeviceBuffer<std::uint32_t> ones(std::vector<std::uint32_t>(n, 1));
+    patterns::TreeReduction<patterns::Sum<std::uint32_t>> tree(n, 3);
+    CHECK(tree.bytes() == (3 + 1) * sizeof(std::uint32_t));
+    const patterns::Cost cost = counted([&] { tree(ones.data(), n); });
+    CHECK(tree.download() == n);
+    CHECK(cost.launches == 2);
+    CHECK(cost.loads == n + 3);  // the second launch adds up three blocks
+    CHECK(cost.barriers == (3 + 1) * patterns::kTreeSteps);
+    tree(ones.data(), 0);
+    CHECK(tree.download() == 0);
+#endif
+}
+
 TEST_CASE("scan: the formulas are exact") {
     require_counting();
 #ifdef CUDASIM_COUNT_ACCESSES

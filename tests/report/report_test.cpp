@@ -79,6 +79,10 @@ TEST_CASE("the conclusion names the winner, by how much, and where another one w
         conclusion(study_of({power_law("Euler", 1, 1, 1, 14), power_law("RK4", 100, 4, 1, 8)}));
     CHECK(contains(text, "For an error of 1e-3, RK4 is the cheapest, 56 times cheaper than Euler."));
     CHECK(contains(text, "The cheapest, by error: 1e2 to 1: Euler; 1e-1 to 1e-6: RK4."));
+    // t = 1 / error, or the 1 s of its first run, against (100 / error)^(1/4).
+    CHECK(contains(text,
+                   "for at most that error: 1.0 at 1e2, 0.7 at 30, 0.6 at 1e1, 0.4 at 3, 0.3 at 1, 0.8 at "
+                   "0.3, 1.8 at 1e-1, 4.4 at 0.03, 10 at 1e-2"));
     CHECK(contains(text, "Only RK4 gets to 1e-6."));
     CHECK(!contains(text, "worse again"));
 }
