@@ -33,6 +33,21 @@ inline TimeStepLimit time_step_limit(const Fluid& fluid) {
 }
 //! [time_step_limit]
 
+/// The arrays of a body of water, n elements each, as something else in the same tank sees them.
+struct WaterArrays {
+    float4 *position, *velocity;
+    float *density, *pressure_term;  ///< pressure_term: p / rho^2
+    std::uint32_t n;
+};
+
+/// Nothing else in the tank.
+struct NoGuest {
+    /// Particles have moved; velocity is the one they moved with. May change both.
+    void after_drift(WaterArrays) {}
+    /// Densities and pressures are those of the water alone. May change both, before they become forces.
+    void after_density(WaterArrays) {}
+};
+
 /// State of n particles on the device. Move-only.
 class Water {
   public:
@@ -58,17 +73,20 @@ class Water {
         std::vector<std::uint32_t> ids(n_);
         for (std::uint32_t i = 0; i < n_; ++i) ids[i] = i;
         id_.upload(ids);
-        compute_acceleration();
+        compute_acceleration(NoGuest{});
     }
 
     //! [step]
     /// One leapfrog step (kick, drift, kick). Waits for nothing: errors of the kernels show at the next copy.
-    void step(float dt_s) {
+    /// @param guest  what else is in the tank: see NoGuest
+    template <class Guest = NoGuest>
+    void step(float dt_s, Guest&& guest = {}) {
         if (n_ == 0) return;
         kick_drift_kernel<<<blocks(), kThreads>>>(position_.data(), velocity_.data(), acceleration_.data(),
                                                   dt_s, box_, n_);
         CUDA_CHECK(cudaGetLastError());
-        compute_acceleration();
+        guest.after_drift(arrays());
+        compute_acceleration(guest);
         kick_kernel<<<blocks(), kThreads>>>(velocity_.data(), acceleration_.data(), dt_s, n_);
         CUDA_CHECK(cudaGetLastError());
     }
@@ -114,8 +132,13 @@ class Water {
                                grid::max_cells_for(n_));
     }
 
+    WaterArrays arrays() {
+        return {position_.data(), velocity_.data(), density_.data(), pressure_term_.data(), n_};
+    }
+
     //! [passes]
-    void compute_acceleration() {
+    template <class Guest>
+    void compute_acceleration(Guest&& guest) {
         if (n_ == 0) return;
         sort_by_cell();
         switch (state_) {
@@ -131,6 +154,7 @@ class Water {
                 break;
         }
         CUDA_CHECK(cudaGetLastError());
+        guest.after_density(arrays());
         // Without viscosity its term is not multiplied by zero: it is not in the kernel.
         if (fluid_.viscosity_m2_per_s > 0)
             force_kernel<true><<<blocks(), kThreads>>>(
