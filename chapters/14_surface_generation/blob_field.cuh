@@ -42,10 +42,13 @@ class CellSort {
 /// field that don't need it have neither the arrays nor the pass that fills them.
 class Blobs {
   public:
+    /// @param settings  complete()
     explicit Blobs(const SurfaceSettings& settings) : kind_(settings.kind) {
         const float spacing_m = settings.particle_spacing_m;
         shape_.radius_m = settings.radius * spacing_m;
         shape_.neighbour_reach_m = settings.neighbour_reach * spacing_m;
+        shape_.pull = settings.pull;
+        shape_.full_ball = 4.18879f * std::pow(settings.neighbour_reach, 3.0f);
         field_.radius_m = shape_.radius_m;
         field_.volume_m3 = spacing_m * spacing_m * spacing_m;
         field_.reach_m = shape_.radius_m * (kind_ == FieldKind::anisotropic ? shape_.longest : 1);
@@ -60,6 +63,7 @@ class Blobs {
             make_room(unsorted_stretch_, n);
             make_room(stretch_, n);
             sort_.build(position, n, box, shape_.neighbour_reach_m);
+            neighbour_cells_ = sort_.cells();
             sort_.gather(blob_.data(), position, n);  // only until the blobs are made
             blob_kernel<<<blocks, kThreads>>>(unsorted_.data(), unsorted_stretch_.data(), blob_.data(),
                                               sort_.ranges(), sort_.cells(), shape_, n);
@@ -77,14 +81,14 @@ class Blobs {
     void fill(float* field, const Bricks& bricks) const {
         switch (kind_) {
             case FieldKind::colour:
-                field_kernel<FieldKind::colour><<<bricks.count(), kBrickRows>>>(
-                    field, bricks.view().corner, blob_.data(), nullptr, sort_.ranges(), sort_.cells(),
-                    bricks.lattice(), field_);
+                field_kernel<FieldKind::colour>
+                    <<<bricks.count(), kBrickRows>>>(field, bricks.view().corner, blob_.data(), nullptr,
+                                                     sort_.ranges(), sort_.cells(), bricks.lattice(), field_);
                 break;
             case FieldKind::zhu_bridson:
-                field_kernel<FieldKind::zhu_bridson><<<bricks.count(), kBrickRows>>>(
-                    field, bricks.view().corner, blob_.data(), nullptr, sort_.ranges(), sort_.cells(),
-                    bricks.lattice(), field_);
+                field_kernel<FieldKind::zhu_bridson>
+                    <<<bricks.count(), kBrickRows>>>(field, bricks.view().corner, blob_.data(), nullptr,
+                                                     sort_.ranges(), sort_.cells(), bricks.lattice(), field_);
                 break;
             case FieldKind::anisotropic:
                 field_kernel<FieldKind::anisotropic><<<bricks.count(), kBrickRows>>>(
@@ -95,10 +99,17 @@ class Blobs {
         CUDA_CHECK(cudaGetLastError());
     }
 
+    const CellGrid& cells() const { return sort_.cells(); }  ///< of the blobs
+    const CellGrid& neighbour_cells() const {
+        return neighbour_cells_;
+    }  ///< of the particles, anisotropic only
+    const BlobShape& shape() const { return shape_; }
+    const FieldShape& field_shape() const { return field_; }
     const float4* blob() const { return blob_.data(); }
     float reach_m() const { return field_.reach_m; }
     std::size_t bytes() const {
-        return sort_.bytes() + unsorted_.bytes() + blob_.bytes() + unsorted_stretch_.bytes() + stretch_.bytes();
+        return sort_.bytes() + unsorted_.bytes() + blob_.bytes() + unsorted_stretch_.bytes() +
+               stretch_.bytes();
     }
 
   private:
@@ -106,6 +117,7 @@ class Blobs {
     BlobShape shape_;
     FieldShape field_;
     CellSort sort_;
+    CellGrid neighbour_cells_;
     course::DeviceBuffer<float4> unsorted_, blob_;
     course::DeviceBuffer<Stretch> unsorted_stretch_, stretch_;
 };

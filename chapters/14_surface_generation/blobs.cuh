@@ -4,6 +4,8 @@
 #pragma once
 #include <cuda_runtime.h>
 
+#include <glm/exponential.hpp>
+
 #include "05_spatial_grid/counting_sort.cuh"
 #include "14_surface_generation/eigen.h"
 
@@ -23,21 +25,25 @@ struct Stretch {
 struct BlobShape {
     float radius_m = 1;           ///< of a round blob
     float neighbour_reach_m = 1;  ///< particles nearer than that say how a blob lies
-    float pull = 0.9f;            ///< 0: the blob stays at its particle, 1: it moves to its neighbours' centre
-    float flattest = 0.25f;       ///< shortest axis / longest axis
-    float longest = 1.15f;        ///< longest axis / radius of a round blob
-    float lonely = 0.5f;          ///< radius of a blob with hardly any neighbours, relative to a round one
-    int few = 25;                 ///< that many neighbours, itself included, are hardly any
+    float pull = 0.6f;       ///< 0: the blob stays at its particle, 1: it moves to its neighbours' centre
+    float flattest = 0.25f;  ///< shortest axis / longest axis
+    float longest = 1.15f;   ///< longest axis / radius of a round blob
+    float lonely = 0.5f;     ///< radius of a blob with hardly any neighbours, relative to a round one
+    float full_ball = 1;     ///< particles within neighbour_reach_m of one deep inside
+    float few = 0.22f;       ///< part of a full ball's neighbours that is hardly any
 };
 
 //! [stretches]
-/// Half axes of the blob relative to a round one, from the variances of its neighbours along them. The weight
-/// 1 - (r/reach)^3 of Yu and Turk gives particles that fill the whole ball a variance of 0.15 reach^2.
+/// Half axes of the blob relative to a round one: as the spread (the root of the variance) of its neighbours
+/// along them. The weight 1 - (r/reach)^3 of Yu and Turk gives particles that fill the whole ball a variance
+/// of 0.15 reach^2. (Theirs go with the variance itself: flatter still, and terraces show where layers of
+/// particles end.)
 constexpr float kFullVariance = 0.15f;
 
 inline __host__ __device__ glm::vec3 stretches(const BlobShape& shape, glm::vec3 variance_m2) {
     const float full = kFullVariance * shape.neighbour_reach_m * shape.neighbour_reach_m;
-    glm::vec3 stretch = glm::min(variance_m2 / full, glm::vec3(shape.longest));
+    const glm::vec3 spread = glm::sqrt(glm::max(variance_m2, glm::vec3(0)) / full);
+    const glm::vec3 stretch = glm::min(spread, glm::vec3(shape.longest));
     const float largest = glm::max(stretch.x, glm::max(stretch.y, stretch.z));
     // Particles that sit at one point have no shape: a round blob, and small.
     if (!(largest > shape.lonely)) return glm::vec3(shape.lonely);
@@ -47,7 +53,8 @@ inline __host__ __device__ glm::vec3 stretches(const BlobShape& shape, glm::vec3
 
 //! [make_stretch]
 /// M = R diag(1 / axis^2) R^T.
-inline __host__ __device__ Stretch make_stretch(const BlobShape& shape, const Eigen& eigen, glm::vec3 stretch) {
+inline __host__ __device__ Stretch make_stretch(const BlobShape& shape, const Eigen& eigen,
+                                                glm::vec3 stretch) {
     const glm::vec3 per_axis = 1.0f / (shape.radius_m * stretch);
     const glm::mat3 rows(eigen.vector[0] * per_axis.x, eigen.vector[1] * per_axis.y,
                          eigen.vector[2] * per_axis.z);
@@ -97,7 +104,7 @@ inline __global__ void blob_kernel(float4* blob, Stretch* stretch, const float4*
     const glm::vec3 mean = glm::vec3(sx, sy, sz) / sum;  // sum >= 1: the particle itself
     Eigen eigen{glm::vec3(0), glm::mat3(1)};
     glm::vec3 axes(shape.lonely);
-    if (near > float(shape.few)) {
+    if (near > shape.few * shape.full_ball) {
         const float xy = sxy / sum - mean.x * mean.y, xz = sxz / sum - mean.x * mean.z,
                     yz = syz / sum - mean.y * mean.z;
         eigen = eigen_of(glm::mat3(sxx / sum - mean.x * mean.x, xy, xz, xy, syy / sum - mean.y * mean.y, yz,

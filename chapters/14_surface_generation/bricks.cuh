@@ -4,7 +4,7 @@
 #pragma once
 #include <cuda_runtime.h>
 
-#include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -36,9 +36,8 @@ inline __global__ void mark_regions_kernel(std::uint32_t* mark, const float4* bl
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= n || !is_finite(xyz(blob[i]))) return;
     const BrickBox bricks = bricks_around(lattice, xyz(blob[i]), blob[i].w);
-    for_each({bricks.low / kRegion, bricks.high / kRegion}, [&](glm::ivec3 region) {
-        atomicExch(&mark[number_of(region, lattice.regions())], 1u);
-    });
+    for_each({bricks.low / kRegion, bricks.high / kRegion},
+             [&](glm::ivec3 region) { atomicExch(&mark[number_of(region, lattice.regions())], 1u); });
 }
 
 /// Only the difference: bricks, in regions that have a place by now.
@@ -131,11 +130,13 @@ class MarkedList {
     /// Waits for the device. @returns how many were marked
     std::uint32_t finish() {
         const std::uint32_t n = before_.size();
-        CUDA_CHECK(cudaMemcpy(before_.data(), mark_.data(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice));
+        CUDA_CHECK(
+            cudaMemcpy(before_.data(), mark_.data(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice));
         count_ = before_.scan();
         make_room(list_, count_);
         if (n == 0) return 0;
-        keep_marked_kernel<<<blocks_for(n, kThreads), kThreads>>>(list_.data(), mark_.data(), before_.data(), n);
+        keep_marked_kernel<<<blocks_for(n, kThreads), kThreads>>>(list_.data(), mark_.data(), before_.data(),
+                                                                  n);
         CUDA_CHECK(cudaGetLastError());
         return count_;
     }
@@ -180,7 +181,8 @@ inline __global__ void neighbours_kernel(std::uint32_t* around, const int4* corn
             brick.y < lattice.bricks.y && brick.z < lattice.bricks.z) {
             const std::uint32_t region = region_place[number_of(brick / kRegion, lattice.regions())];
             if (region != kNone)
-                number = brick_place[region * kRegionBricks + number_of(brick % kRegion, glm::ivec3(kRegion))];
+                number =
+                    brick_place[region * kRegionBricks + number_of(brick % kRegion, glm::ivec3(kRegion))];
         }
         around[kAround * b + k] = number;
     }
@@ -207,14 +209,32 @@ inline __device__ float node_value(const float* field, const std::uint32_t* arou
 }
 //! [node_value]
 
+/// What a brick costs: its values, the bits and marks of its rows (twice, and the list of them), who is
+/// around it, where it is, its own mark.
+constexpr std::size_t kBytesPerBrick =
+    kBrickNodes * sizeof(float) + kBrickRows * (1 + 3 * sizeof(std::uint32_t)) +
+    kAround * sizeof(std::uint32_t) + sizeof(int4) + 3 * sizeof(std::uint32_t);
+
+/// @throws course::BadInput if the device has less than that altogether, or rows of bricks could no longer be
+/// counted in 32 bits
+inline void require_device_memory(double bytes, const std::string& what) {
+    std::size_t free_bytes = 0, total_bytes = 0;
+    CUDA_CHECK(cudaMemGetInfo(&free_bytes, &total_bytes));
+    if (bytes < double(total_bytes) && bytes / kBytesPerBrick < 0xffffffffu / kBrickRows) return;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.0f", bytes);
+    throw course::BadInput(what + " would take " + text + " bytes, and the device has " +
+                           std::to_string(total_bytes) +
+                           ": take fewer nodes for each spacing, or a smaller box");
+}
+
 //! [Bricks]
 /// The bricks of a lattice that exist.
 class Bricks {
   public:
     /// Those that any particle needs. @param blob  x, y, z and in w the reach, in m
     void build(const Lattice& lattice, const float4* blob, std::uint32_t n) {
-        check_memory(lattice);
-        lattice_ = lattice;
+        set_lattice(lattice);
         std::uint32_t* region = regions_.clear(region_count());
         mark_regions_kernel<<<blocks_for(n, kThreads), kThreads>>>(region, blob, lattice, n);
         CUDA_CHECK(cudaGetLastError());
@@ -225,10 +245,12 @@ class Bricks {
     }
     /// All of them: the dense grid.
     void build_all(const Lattice& lattice) {
-        check_memory(lattice);
-        lattice_ = lattice;
+        const glm::dvec3 all(lattice.bricks);
+        check_bricks(all.x * all.y * all.z);
+        set_lattice(lattice);
         const std::uint32_t regions = region_count(), bricks = kRegionBricks * regions;
-        mark_all_regions_kernel<<<blocks_for(regions, kThreads), kThreads>>>(regions_.resize(regions), regions);
+        mark_all_regions_kernel<<<blocks_for(regions, kThreads), kThreads>>>(regions_.resize(regions),
+                                                                             regions);
         CUDA_CHECK(cudaGetLastError());
         regions_.finish();
         mark_all_bricks_kernel<<<blocks_for(bricks, kThreads), kThreads>>>(bricks_.resize(bricks), lattice,
@@ -241,17 +263,29 @@ class Bricks {
     const course::DeviceBuffer<int4>& corners() const { return corner_; }
     const Lattice& lattice() const { return lattice_; }
     std::uint32_t count() const { return bricks_.count(); }
+    std::uint32_t region_count() const {  ///< that the lattice could have
+        const glm::ivec3 r = lattice_.regions();
+        return std::uint32_t(r.x) * r.y * r.z;
+    }
+    std::uint32_t regions() const { return regions_.count(); }  ///< that exist
     std::size_t bytes() const {
         return regions_.bytes() + bricks_.bytes() + corner_.bytes() + around_.bytes();
     }
 
   private:
-    std::uint32_t region_count() const {
-        const glm::ivec3 r = lattice_.regions();
-        return std::uint32_t(r.x) * r.y * r.z;
+    /// @throws course::BadInput if the table of regions, which covers the whole box, particles or not, is too
+    /// large
+    void set_lattice(const Lattice& lattice) {
+        const glm::dvec3 regions(lattice.regions());
+        require_device_memory(3.0 * sizeof(std::uint32_t) * regions.x * regions.y * regions.z,
+                              "a table of the regions of this box");
+        lattice_ = lattice;
+    }
+    static void check_bricks(double count) {
+        require_device_memory(double(kBytesPerBrick) * count, "a field on bricks");
     }
     void finish() {
-        bricks_.finish();
+        check_bricks(bricks_.finish());
         make_room(corner_, count());
         make_room(around_, std::size_t(kAround) * count());
         if (count() == 0) return;
@@ -263,18 +297,6 @@ class Bricks {
                                                 bricks_.place(), lattice_, count());
         CUDA_CHECK(cudaGetLastError());
     }
-    /// The region table covers the whole box, particles or not.
-    static void check_memory(const Lattice& lattice) {
-        const glm::dvec3 regions(lattice.regions());
-        const double bytes = 3 * sizeof(std::uint32_t) * regions.x * regions.y * regions.z;
-        std::size_t free_bytes = 0, total_bytes = 0;
-        CUDA_CHECK(cudaMemGetInfo(&free_bytes, &total_bytes));
-        if (!(bytes < double(total_bytes)) || !(regions.x * regions.y * regions.z < double(kNone / kRegionBricks)))
-            throw course::BadInput("the table of regions alone would take " +
-                                   std::to_string((unsigned long long)(bytes)) +
-                                   " bytes: take a coarser field or a smaller box");
-    }
-
     Lattice lattice_;
     MarkedList regions_, bricks_;
     course::DeviceBuffer<int4> corner_;

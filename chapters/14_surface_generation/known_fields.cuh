@@ -31,7 +31,9 @@ class KnownField {
 
     MeshSize build() { return size_ = cubes_.count(field_.data(), bricks_.view(), iso_); }
     MeshSize size() const { return size_; }
-    void write(const MeshOut& out) const { cubes_.write(out, field_.data(), bricks_.view(), bricks_.lattice()); }
+    void write(const MeshOut& out) const {
+        cubes_.write(out, field_.data(), bricks_.view(), bricks_.lattice());
+    }
     Mesh mesh(Normals normals = Normals::from_field) {
         build();
         DeviceMesh mesh(normals);

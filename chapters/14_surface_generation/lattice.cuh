@@ -11,10 +11,10 @@
 namespace surface {
 
 //! [Lattice]
-constexpr int kBrick = 8;                     ///< nodes along the edge of a brick
-constexpr int kBrickRows = kBrick * kBrick;   ///< rows of nodes in a brick, each along x
+constexpr int kBrick = 8;                    ///< nodes along the edge of a brick
+constexpr int kBrickRows = kBrick * kBrick;  ///< rows of nodes in a brick, each along x
 constexpr int kBrickNodes = kBrick * kBrickRows;
-constexpr int kRegion = 8;                    ///< bricks along the edge of a region
+constexpr int kRegion = 8;  ///< bricks along the edge of a region
 constexpr int kRegionBricks = kRegion * kRegion * kRegion;
 constexpr std::uint32_t kNone = 0xffffffffu;  ///< number of a brick that does not exist
 
@@ -48,7 +48,8 @@ struct BrickBox {
 inline __host__ __device__ BrickBox bricks_around(const Lattice& lattice, glm::vec3 x_m, float reach_m) {
     const glm::vec3 at = (x_m - lattice.origin_m) / lattice.spacing_m;
     const float reach = reach_m / lattice.spacing_m;
-    const glm::vec3 low = glm::floor(at - reach), high = glm::ceil(at + reach), end(lattice.bricks * kBrick - 1);
+    const glm::vec3 low = glm::floor(at - reach), high = glm::ceil(at + reach),
+                    end(lattice.bricks * kBrick - 1);
     return {glm::ivec3(glm::clamp(low, glm::vec3(0), end)) / kBrick,
             glm::ivec3(glm::clamp(high, glm::vec3(0), end)) / kBrick};
 }

@@ -1,48 +1,261 @@
-// Chapter 14.
+// Chapter 14: the surface of chapter 10's water.
+#include <chrono>
 #include <cstdio>
-#include <random>
-#include "14_surface_generation/known_fields.cuh"
-#include "common/timing.h"
+#include <memory>
+
+#include "14_surface_generation/mesh_file.h"
+#include "14_surface_generation/studies.cuh"
+#include "14_surface_generation/surface_view.cuh"
+#include "common/gl_context.h"
+#include "common/gl_window.h"
+#include "common/gpu_timer.h"
+#include "common/program.h"
+
+namespace {
+
 using namespace surface;
-int main() {
-    for (int n : {17, 33, 65, 129}) {
-        KnownField f = known_ball(n, BallField::distance);
-        Mesh m = f.mesh();
-        Measures s = measure(m);
-        Soundness ok = inspect(m);
-        double h = 3.0 / (n - 1), a = 4 * M_PI, v = 4 * M_PI / 3;
-        auto t = course::time_work(9, [&] { f.build(); });
-        DeviceMesh dm;
-        auto t2 = course::time_work(9, [&] { f.build(); dm.take(f); });
-        std::printf("n %d tri %zu area %.4f vol %.4f chi %ld sound %d flat %zu  %.2f ms count %.2f all: %.1f Mcells/s\n", n, m.triangles(), (s.area_m2 / a - 1) / h / h,
-                    (s.volume_m3 / v - 1) / h / h, ok.euler, ok.sound(), ok.flat_triangles, t.median_s * 1e3, t2.median_s * 1e3, (n - 1.) * (n - 1) * (n - 1) / t2.median_s * 1e-6);
+
+constexpr int kStills = 6;          // pictures of a run: the start, the end, and four evenly between
+constexpr int kStepsPerCheck = 10;  // as in chapter 10
+
+/// What this program can be asked for, beyond the options that all programs have.
+struct Choices {
+    std::string draw = "surface", field = "anisotropic", mesh = "none";
+    float resolution = 2, iso = 0;
+    bool dense = false;
+    int frames = 0;
+};
+
+Settings make_settings(const course::ProgramOptions& options, const Choices& choices) {
+    const auto one_of = [](const std::string& option, const std::string& value,
+                           const std::vector<std::string>& allowed) {
+        std::string list;
+        for (std::size_t k = 0; k < allowed.size(); ++k) {
+            if (value == allowed[k]) return int(k);
+            list += (k == 0 ? "" : ", ") + allowed[k];
+        }
+        throw course::BadInput(option + " must be one of " + list + ", not '" + value + "'");
+    };
+    Settings settings;
+    settings.drawing = Drawing(one_of("--draw", choices.draw, {"none", "points", "spheres", "surface"}));
+    settings.surface.kind =
+        FieldKind(one_of("--field", choices.field, {"colour", "zhu_bridson", "anisotropic"}));
+    one_of("--mesh", choices.mesh, {"none", "ply", "obj"});
+    if (!(choices.iso >= 0)) throw course::BadInput("--iso must be 0 (what suits the field) or more");
+    if (choices.frames < 0) throw course::BadInput("--frames must be 0 or more");
+    settings.water.scene = sph::find_scene(sph::all_scenes(), options.scene);
+    settings.water.particles = options.particles;
+    settings.water.dt_s = options.dt_s;
+    settings.water.seed = options.seed;
+    settings.water.drawing = settings.drawing == Drawing::points    ? sph::Drawing::points
+                             : settings.drawing == Drawing::spheres ? sph::Drawing::spheres
+                                                                    : sph::Drawing::none;
+    settings.surface.nodes_per_spacing = choices.resolution;
+    settings.surface.iso = choices.iso;
+    settings.surface.sparse = !choices.dense;
+    return settings;
+}
+
+std::string file_number(int number) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%06d", number);
+    return text;
+}
+
+/// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
+class Recorder {
+  public:
+    Recorder(course::Program& program, const Settings& settings, const sph::Start& start)
+        : program_(program),
+          settings_(settings),
+          camera_(sph::first_view(settings.water.scene.tank).camera()) {
+        if (settings.drawing == Drawing::none) {  // numbers alone: no OpenGL, and no normals
+            numbers_ = std::make_unique<Surface>(settings.surface);
+            return;
+        }
+        context_ = course::make_headless_context();
+        view_ = std::make_unique<View>(settings, start, program.options.width, program.options.height);
     }
-    std::mt19937 r(1);
-    std::uniform_real_distribution<float> u(-1, 1);
-    int bad = 0;
-    for (int k = 0; k < 2000; ++k) {
-        KnownField f(glm::ivec3(10), glm::vec3(0), 1, 0, [&](glm::ivec3 n, glm::vec3) {
-            bool rim = n.x == 0 || n.y == 0 || n.z == 0 || n.x == 9 || n.y == 9 || n.z == 9;
-            float v = u(r); return rim ? -1.f : v; });
-        Mesh m = f.mesh();
-        Soundness ok = inspect(m);
-        if (!ok.sound() || ok.flat_triangles) { if (!bad) std::printf("bad %zu %zu %zu %zu pinched %zu\n", ok.unpaired_edges, ok.duplicate_triangles, ok.flat_triangles, ok.unused_vertices, ok.pinched_vertices); ++bad; }
+
+    void add(const sph::Start& start, int step) {
+        const double time_s = step * double(start.dt_s);
+        if (numbers_) {
+            const auto before = std::chrono::steady_clock::now();
+            numbers_->build(start.water.position(), start.water.size());
+            mesh_.take(*numbers_);
+            CUDA_CHECK(cudaDeviceSynchronize());
+            const double seconds =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+            const Measures measures = measure(mesh_.download());
+            table_.row({step, time_s, numbers_->brick_count(), mesh_.size().vertices, mesh_.size().triangles,
+                        measures.area_m2, measures.volume_m3, 1e3 * seconds});
+            return;
+        }
+        view_->draw(start.water, camera_);
+        stills_.push_back(view_->image());
+        const std::string file = "still_" + file_number(step) + ".png";
+        course::save_png(program_.options.out / file, stills_.back());
+        captions_.push_back({file, course::format_number(time_s) + " s, step " + std::to_string(step)});
+        if (const Surface* surface = view_->surface())
+            drawn_.row(
+                {step, time_s, surface->brick_count(), surface->size().vertices, surface->size().triangles});
     }
-    std::printf("%d bad\n", bad);
-    for (FieldKind kind : {FieldKind::colour, FieldKind::zhu_bridson, FieldKind::anisotropic}) {
-        std::vector<float4> p;
-        float dx = 0.02f;
-        int n = 50;
-        for (int z = 0; z < n; ++z) for (int y = 0; y < n; ++y) for (int x = 0; x < n; ++x)
-            p.push_back(make_float4((x + 0.5f + 0.05f * u(r)) * dx, (y + 0.5f + 0.05f * u(r)) * dx, (z + 0.5f + 0.05f * u(r)) * dx, 0));
-        SurfaceSettings s; s.kind = kind; s.particle_spacing_m = dx;
-        course::DeviceBuffer<float4> d(p);
-        Surface surf(s);
-        DeviceMesh dm;
-        auto t = course::time_work(5, [&] { surf.build(d.data(), p.size()); dm.take(surf); });
-        Mesh m = dm.download();
-        Soundness ok = inspect(m);
-        Measures me = measure(m);
-        std::printf("kind %d bricks %u v %u t %u sound %d parts %zu vol %.4f (true %.4f) area %.3f  %.1f ms bytes %.1f MB\n", int(kind), surf.brick_count(), dm.size().vertices, dm.size().triangles, ok.sound(), ok.parts, me.volume_m3, n*n*n*dx*dx*dx, me.area_m2, t.median_s * 1e3, surf.bytes() / 1e6);
+
+    /// Everything gathered so far goes into the result; also when the run ends by an error.
+    void finish() {
+        if (!stills_.empty()) {
+            program_.result().note("OpenGL " + context_->info().version + ", " + context_->info().renderer +
+                                   "; handover: " + view_->handover());
+            for (course::Image& still : stills_) still = course::half_size(still);
+            course::save_png(program_.options.out / "time_lapse.png", course::contact_sheet(stills_, 3));
+            program_.result().picture("time_lapse.png", "Time lapse, row by row");
+        }
+        for (const auto& [file, caption] : captions_) program_.result().picture(file, caption);
+        if (settings_.drawing == Drawing::none) program_.result().table(table_);
+        if (settings_.drawing == Drawing::surface) program_.result().table(drawn_);
     }
+
+  private:
+    course::Program& program_;
+    Settings settings_;
+    course::Camera camera_;
+    course::Table table_{
+        "The surface",
+        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "ms"}};
+    course::Table drawn_{"The surface", {"step", "time (s)", "bricks", "vertices", "triangles"}};
+    std::unique_ptr<Surface> numbers_;
+    DeviceMesh mesh_{Normals::none};
+    std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
+    std::unique_ptr<View> view_;
+    std::vector<course::Image> stills_;
+    std::vector<std::pair<std::string, std::string>> captions_;
+};
+
+/// The mesh as a file: the one case where it comes to the host.
+void save_mesh(course::Program& program, const Settings& settings, const sph::Water& water,
+               const std::string& format) {
+    Surface surface(settings.surface);
+    surface.build(water.position(), water.size());
+    DeviceMesh mesh;
+    mesh.take(surface);
+    const std::filesystem::path file = program.options.out / ("surface." + format);
+    format == "ply" ? save_ply(file, mesh.download()) : save_obj(file, mesh.download());
+    program.result().note("The last surface: " + file.string());
+}
+
+void run_headless(course::Program& program, const Settings& settings, const Choices& choices,
+                  sph::Start& start) {
+    const int steps = program.options.steps;
+    Recorder recorder(program, settings, start);
+    sph::Summarizer summarize(start.water.size());
+    course::Progress progress(settings.water.scene.name, steps);
+    int stills = 0;
+    try {
+        for (int step = 0; step <= steps; ++step) {
+            const bool still = step >= double(stills) * steps / (kStills - 1);
+            if (still || step % kStepsPerCheck == 0)
+                sph::check_state(start.water, summarize(start.water), step, start.dt_s);
+            if (still) recorder.add(start, step);
+            while (still && step >= double(stills) * steps / (kStills - 1) && stills < kStills) ++stills;
+            if (step == steps) break;
+            start.water.step(start.dt_s);
+            CUDA_CHECK(cudaDeviceSynchronize());
+            progress.update(step + 1);
+        }
+    } catch (const course::Unstable&) {
+        recorder.finish();
+        throw;
+    }
+    recorder.finish();
+    if (choices.mesh != "none") save_mesh(program, settings, start.water, choices.mesh);
+}
+
+void run_window(course::Program& program, const Choices& choices, const Settings& settings,
+                sph::Start& start) {
+    const course::ProgramOptions& options = program.options;
+    const auto window =
+        course::make_window(options.width, options.height, "Water's surface: " + settings.water.scene.name);
+    if (settings.drawing == Drawing::none)
+        throw course::BadInput("--window shows something: not with --draw none");
+    View view(settings, start, options.width, options.height);
+    std::printf(
+        "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
+        "P: picture, Esc: end\n");
+    sph::Summarizer summarize(start.water.size());
+    course::OrbitCamera orbit = sph::first_view(settings.water.scene.tank);
+    bool paused = false;
+    int step = 0;
+    for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
+        const course::WindowEvents events = window->poll();
+        if (events.pause) paused = !paused;
+        if (events.step) paused = true;
+        if (events.reset) {
+            start = sph::make_start(settings.water);
+            step = 0;
+        }
+        course::steer(orbit, events, options.height);
+        if (!paused || events.step) {
+            start.water.step(start.dt_s);
+            if (++step % kStepsPerCheck == 0)
+                sph::check_state(start.water, summarize(start.water), step, start.dt_s);
+        }
+        view.draw(start.water, orbit.camera());
+        if (events.screenshot) {
+            const std::string file = "screenshot_" + file_number(step) + ".png";
+            course::save_png(options.out / file, view.image());
+            std::printf("%s\n", (options.out / file).string().c_str());
+        }
+        window->show(view.picture());
+    }
+}
+
+/// The answer to --explain, for which the surface of the start is made.
+void print_explanation(const Settings& settings, const sph::Start& start) {
+    if (settings.drawing == Drawing::points || settings.drawing == Drawing::spheres) {
+        std::printf("%s", explain(settings, nullptr).c_str());
+        return;
+    }
+    Surface surface(settings.surface);
+    surface.build(start.water.position(), start.water.size());
+    std::printf("%s", explain(settings, &surface).c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    course::Program program(
+        "14_surface_generation", "The water's surface",
+        "A field on a grid that exists only where particles are, and marching cubes in four "
+        "kernels: water gets a skin, as a picture or as a file.");
+    program.options.particles = 16384;
+    program.options.steps = 1000;
+    for (const sph::Scene& scene : sph::all_scenes()) program.scenes.push_back(scene.name);
+    Choices choices;
+    program.option("--draw", choices.draw, "surface, spheres, points, or none (numbers alone, no OpenGL)");
+    program.option("--field", choices.field, "anisotropic, zhu_bridson or colour");
+    program.option("--resolution", choices.resolution,
+                   "nodes of the field for each spacing of the particles");
+    program.option("--iso", choices.iso, "value of the field where the surface is (0: what suits the field)");
+    program.option("--mesh", choices.mesh, "write the last surface as ply or obj");
+    program.flag("--dense", choices.dense, "bricks everywhere in the box, to compare");
+    program.option("--frames", choices.frames,
+                   "close the window after so many frames (0: when the user does)");
+    declare_studies(program);
+    return program.run(argc, argv, [&] {
+        Settings settings = make_settings(program.options, choices);
+        course::require_memory(double(settings.water.particles) *
+                               (2 * sizeof(float4) + sph::Water::kBytesPerParticle));
+        complete(settings.surface);  // bad input is told before the water is made
+        sph::Start start = sph::make_start(settings.water);
+        settings.surface.particle_spacing_m = start.spacing_m;
+        if (program.options.explain) {
+            print_explanation(settings, start);
+            return;
+        }
+        program.result().device = course::device_name();
+        if (program.options.window)
+            run_window(program, choices, settings, start);
+        else
+            run_headless(program, settings, choices, start);
+    });
 }

@@ -18,14 +18,15 @@ struct MeshSize {
 
 /// Where a mesh goes, in device memory.
 struct MeshOut {
-    float4* position;       ///< x, y, z in m, and 1
-    float4* normal;         ///< length 1, away from the inside, and 0; nullptr: no normals wanted
-    std::uint32_t* index;   ///< three a triangle, counter-clockwise as seen from outside
+    float4* position;      ///< x, y, z in m, and 1
+    float4* normal;        ///< length 1, away from the inside, and 0; nullptr: no normals wanted
+    std::uint32_t* index;  ///< three a triangle, counter-clockwise as seen from outside
 };
 
 //! [inside]
 /// One thread per row of nodes: a bit for each of the eight, set if the node is inside. NaN is not.
-inline __global__ void inside_kernel(std::uint8_t* inside, const float* field, float iso, std::uint32_t rows) {
+inline __global__ void inside_kernel(std::uint8_t* inside, const float* field, float iso,
+                                     std::uint32_t rows) {
     const std::uint32_t r = blockIdx.x * blockDim.x + threadIdx.x;
     if (r >= rows) return;
     const float* node = field + std::size_t(r) * kBrick;
@@ -39,10 +40,10 @@ inline __global__ void inside_kernel(std::uint8_t* inside, const float* field, f
 //! [row_of]
 /// Number of the row of nodes (y, z) of brick b, each from 0 to 8, in the brick or `side_x` (0 or 1) bricks
 /// further along x. kNone where there is no brick: its nodes are outside.
-inline __device__ std::uint32_t row_of(const std::uint32_t* around, std::uint32_t b, int side_x, int y, int z) {
+inline __device__ std::uint32_t row_of(const std::uint32_t* around, std::uint32_t b, int side_x, int y,
+                                       int z) {
     const int side_y = y / kBrick, side_z = z / kBrick;
-    const std::uint32_t brick =
-        around[kAround * b + (1 + side_x) + 3 * (1 + side_y) + 9 * (1 + side_z)];
+    const std::uint32_t brick = around[kAround * b + (1 + side_x) + 3 * (1 + side_y) + 9 * (1 + side_z)];
     if (brick == kNone) return kNone;
     return brick * kBrickRows + kBrick * (z % kBrick) + y % kBrick;
 }
@@ -97,16 +98,17 @@ struct RowWork {
 
 //! [count]
 /// One thread per crossed row: its edges with a vertex, and how many vertices and triangles it makes.
-inline __global__ void count_kernel(RowWork* work, std::uint32_t* vertices, std::uint32_t* triangles,
-                                    const std::uint32_t* crossed_rows, const std::uint8_t* inside,
-                                    const std::uint32_t* around, const CaseTable* table, std::uint32_t n) {
+inline __global__ void count_rows_kernel(RowWork* work, std::uint32_t* vertices, std::uint32_t* triangles,
+                                         const std::uint32_t* crossed_rows, const std::uint8_t* inside,
+                                         const std::uint32_t* around, const CaseTable* table,
+                                         std::uint32_t n) {
     const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
     if (k >= n) return;
     const CellRow row = cell_row(inside, around, crossed_rows[k]);
     const std::uint32_t own = row.nodes[0];
     // A bit is set where a node and its neighbour along the axis are not on the same side.
-    const std::uint32_t edges = ((own ^ own >> 1) & 0xff) | ((own ^ row.nodes[1]) & 0xff) << 8 |
-                                ((own ^ row.nodes[2]) & 0xff) << 16;
+    const std::uint32_t edges =
+        ((own ^ own >> 1) & 0xff) | ((own ^ row.nodes[1]) & 0xff) << 8 | ((own ^ row.nodes[2]) & 0xff) << 16;
     std::uint32_t count = 0;
     for (int i = 0; i < kBrick; ++i) count += table->triangles[case_of(row, i)];
     work[k] = {crossed_rows[k], edges};
@@ -130,8 +132,8 @@ inline __device__ glm::vec3 gradient(const float* field, const std::uint32_t* ar
     for (int axis = 0; axis < 3; ++axis) {
         glm::ivec3 step(0);
         step[axis] = 1;
-        slope[axis] = 0.5f * (node_value(field, around, b, node + step) -
-                              node_value(field, around, b, node - step));
+        slope[axis] =
+            0.5f * (node_value(field, around, b, node + step) - node_value(field, around, b, node - step));
     }
     return slope;
 }
@@ -243,7 +245,7 @@ class MarchingCubes {
         make_room(work_, crossed_count_);
         first_vertex_.resize(crossed_count_);
         first_triangle_.resize(crossed_count_);
-        count_kernel<<<blocks_for(crossed_count_, kThreads), kThreads>>>(
+        count_rows_kernel<<<blocks_for(crossed_count_, kThreads), kThreads>>>(
             work_.data(), first_vertex_.data(), first_triangle_.data(), crossed_.list(), inside_.data(),
             bricks.around, table_.data(), crossed_count_);
         CUDA_CHECK(cudaGetLastError());
@@ -252,7 +254,8 @@ class MarchingCubes {
     }
 
     /// Generate: writes the mesh whose size count() gave. @param field, bricks  the same as there
-    void write(const MeshOut& out, const float* field, const BrickView& bricks, const Lattice& lattice) const {
+    void write(const MeshOut& out, const float* field, const BrickView& bricks,
+               const Lattice& lattice) const {
         if (crossed_count_ == 0) return;
         const std::uint32_t blocks = blocks_for(crossed_count_, kThreads);
         if (out.normal)
@@ -270,6 +273,8 @@ class MarchingCubes {
         CUDA_CHECK(cudaGetLastError());
     }
 
+    /// Rows of the bricks that the surface passes, out of all that were looked at.
+    std::uint32_t crossed_rows() const { return crossed_count_; }
     std::size_t bytes() const {
         return table_.bytes() + inside_.bytes() + crossed_.bytes() + work_.bytes() + first_vertex_.bytes() +
                first_triangle_.bytes();

@@ -57,9 +57,9 @@ struct Soundness {
     std::size_t flat_triangles = 0;        ///< no area, as the float positions have it
     std::size_t duplicate_triangles = 0;   ///< same three vertices as another one
     std::size_t unused_vertices = 0;
-    std::size_t pinched_vertices = 0;      ///< triangles around it form more than one fan
-    long euler = 0;                        ///< vertices - edges + triangles: 2 for a ball, 0 for a torus
-    std::size_t parts = 0;                 ///< pieces that are not connected
+    std::size_t pinched_vertices = 0;  ///< triangles around it form more than one fan
+    long euler = 0;                    ///< vertices - edges + triangles: 2 for a ball, 0 for a torus
+    std::size_t parts = 0;             ///< pieces that are not connected
 
     bool closed() const { return bad_indices == 0 && unpaired_edges == 0; }
     bool sound() const {
@@ -107,8 +107,7 @@ inline Soundness inspect(const Mesh& mesh) {
         }
         found.degenerate_triangles += v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
         const glm::dvec3 a = mesh.corner(t, 0);
-        found.flat_triangles +=
-            !(glm::length(glm::cross(mesh.corner(t, 1) - a, mesh.corner(t, 2) - a)) > 0);
+        found.flat_triangles += !(glm::length(glm::cross(mesh.corner(t, 1) - a, mesh.corner(t, 2) - a)) > 0);
         std::sort(v, v + 3);
         sorted_corners.push_back({v[0], v[1], v[2]});
     }

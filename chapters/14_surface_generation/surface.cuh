@@ -21,35 +21,28 @@ inline Lattice lattice_around(const patterns::Bounds& box, float reach_m, float 
     const glm::dvec3 nodes = glm::ceil((glm::dvec3(box.high_m) + rim) / h) - low + 1.0;
     const double longest = glm::max(nodes.x, glm::max(nodes.y, nodes.z));
     if (!(longest < 1 << 24))  // where a float can no longer tell one node from the next
-        throw course::BadInput("the particles' box is " + std::to_string(longest) +
-                               " nodes long, and 16777216 is the most: take a coarser field or a smaller box");
+        throw course::BadInput(
+            "the particles' box is " + std::to_string(longest) +
+            " nodes long, and 16777216 is the most: take a coarser field or a smaller box");
     return {glm::vec3(low * h), spacing_m, glm::ivec3(glm::ceil(nodes / double(kBrick)))};
 }
 //! [lattice_around]
-
-/// A field on bricks costs that much for each brick that exists: values, bits, marks, neighbours.
-constexpr std::size_t kBytesPerBrick = kBrickNodes * sizeof(float) + kBrickRows * (1 + 2 * sizeof(std::uint32_t)) +
-                                       kAround * sizeof(std::uint32_t) + sizeof(int4) + 2 * sizeof(std::uint32_t);
 
 //! [Surface]
 /// Makes surfaces, one after the other. Memory grows to what the largest one needed and is kept.
 class Surface {
   public:
     /// @throws course::BadInput
-    explicit Surface(const SurfaceSettings& settings) : settings_(checked(settings)), blobs_(settings) {
-        if (settings_.iso == 0) settings_.iso = default_iso(settings);
-    }
+    explicit Surface(const SurfaceSettings& settings) : settings_(complete(settings)), blobs_(settings_) {}
 
     /// Field and sizes for n particles in device memory. Those at NaN or infinity are left out. Waits for the
     /// device. @throws course::BadInput if the field does not fit into its memory
     MeshSize build(const float4* position, std::uint32_t n) {
         size_ = {};
-        const patterns::Bounds box = patterns::find_bounds(position, n);
-        if (n == 0 || !(box.low_m.x <= box.high_m.x)) {  // nobody, or nobody anywhere
-            no_bricks_ = true;
-            return size_;
-        }
-        no_bricks_ = false;
+        find_bounds_.launch(position, n);
+        const patterns::Bounds box = find_bounds_.download();
+        empty_ = !(box.low_m.x <= box.high_m.x);  // nobody, or nobody at a finite place
+        if (empty_) return size_;
         blobs_.build(position, n, box);
         const float node_m = settings_.particle_spacing_m / settings_.nodes_per_spacing;
         const Lattice lattice = lattice_around(box, blobs_.reach_m(), node_m);
@@ -71,28 +64,26 @@ class Surface {
 
     MeshSize size() const { return size_; }
     const SurfaceSettings& settings() const { return settings_; }
-    std::uint32_t brick_count() const { return no_bricks_ ? 0 : bricks_.count(); }
+    std::uint32_t brick_count() const { return empty_ ? 0 : bricks_.count(); }
+    const Blobs& blobs() const { return blobs_; }
     const Bricks& bricks() const { return bricks_; }
     const course::DeviceBuffer<float>& field() const { return field_; }
     const MarchingCubes& marching_cubes() const { return marching_cubes_; }
     /// Device memory held now.
     std::size_t bytes() const {
-        return blobs_.bytes() + bricks_.bytes() + field_.bytes() + marching_cubes_.bytes();
+        return 6 * sizeof(float) + blobs_.bytes() + bricks_.bytes() + field_.bytes() +  // six: the bounds
+               marching_cubes_.bytes();
     }
 
   private:
-    static const SurfaceSettings& checked(const SurfaceSettings& settings) {
-        check_settings(settings);
-        return settings;
-    }
-
     SurfaceSettings settings_;
+    patterns::BoundsFinder find_bounds_{patterns::BoundsMethod::walk};
     Blobs blobs_;
     Bricks bricks_;
     course::DeviceBuffer<float> field_;
     MarchingCubes marching_cubes_;
     MeshSize size_;
-    bool no_bricks_ = true;
+    bool empty_ = true;
 };
 //! [Surface]
 
