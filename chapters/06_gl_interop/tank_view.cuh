@@ -23,6 +23,7 @@ struct TankScene {
     Drawing drawing = Drawing::spheres;
     float radius_m = 0.01f;      ///< of a sphere
     float white_at_m_per_s = 3;  ///< speed at which particles are white
+    bool edges = true;           ///< the tank's twelve edges, over all that is drawn so far
 };
 
 /// Draws up to `max_particles` particles. Needs a current OpenGL context.
@@ -57,7 +58,7 @@ class TankView {
         look.drawing = scene.drawing;
         look.palette = water_palette(scene.white_at_m_per_s);
         look.region = scene.tank;
-        look.region_edges = true;
+        look.region_edges = scene.edges;
         look.floor_tile_m = 0.1f;
         return look;
     }

@@ -18,15 +18,18 @@ struct Surface {
     float friction = 0;     ///< Coulomb's: the part of the normal impulse that acts against sliding
 };
 
-/// One obstacle during one time step, in which it moves straight and evenly, as particles do.
+/// One obstacle during one time step, in which it moves straight, as particles do.
 struct Moving {
     Solid solid;  ///< where particle *centres* can't be: the obstacle and a gap around it
     Surface surface;
-    glm::vec3 from_m{0}, to_m{0};  ///< its middle at the start and the end of the step
-    glm::vec3 velocity_m_per_s{0};
+    glm::vec3 from_m{0}, to_m{0};              ///< its middle at the start and the end of the step
+    glm::vec3 from_m_per_s{0}, to_m_per_s{0};  ///< its velocity then
 
     __host__ __device__ glm::vec3 middle_m(float fraction) const {
         return from_m + fraction * (to_m - from_m);
+    }
+    __host__ __device__ glm::vec3 velocity_m_per_s(float fraction) const {
+        return from_m_per_s + fraction * (to_m_per_s - from_m_per_s);
     }
 };
 
@@ -85,7 +88,7 @@ inline __host__ __device__ Contact first_contact(const Obstacles& all, float don
             if (!find_crossing(o.solid, start, end, crossing)) continue;
         } else {  // it touches already, or an obstacle was put on top of it: out by the shortest way
             crossing.normal = outward(o.solid, start);
-            const bool leaves = glm::dot(v - o.velocity_m_per_s, crossing.normal) >= 0;
+            const bool leaves = glm::dot(v - o.velocity_m_per_s(done), crossing.normal) >= 0;
             if (leaves && signed_distance(o.solid, end) >= 0) continue;
         }
         if (crossing.fraction >= first.fraction) continue;
@@ -115,10 +118,10 @@ inline __host__ __device__ void resolve(const Obstacles& all, float moved_s, con
         const Contact contact = first_contact(all, done, from, x, v);
         if (contact.obstacle < 0) break;
         const Moving& o = all.obstacle[contact.obstacle];
-        const glm::vec3 before = v;
-        v = bounce(v, o.velocity_m_per_s, contact.normal, o.surface, share[contact.obstacle]);
-        on_bounce(contact.obstacle, before, v);
         done += contact.fraction * (1 - done);
+        const glm::vec3 before = v;
+        v = bounce(v, o.velocity_m_per_s(done), contact.normal, o.surface, share[contact.obstacle]);
+        on_bounce(contact.obstacle, before, v);
         from = o.middle_m(done) + contact.place;
         x = from + (1 - done) * all.dt_s * v;
         touched = true;

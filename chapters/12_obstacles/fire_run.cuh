@@ -12,7 +12,7 @@ namespace obstacles {
 struct FireObstacles {
     fire::FireScene fire;
     std::vector<Obstacle> obstacles;
-    double duration_s = 2;  ///< shown, after the fire has grown
+    double duration_s = 2;
 };
 
 //! [flame_scene]
@@ -21,13 +21,16 @@ inline FireObstacles flame_around_ball(std::uint32_t particles, std::uint64_t se
     FireObstacles scene{fire::make_scene("campfire", particles, seed), {}};
     scene.fire.name = "flame_around_ball";
     Obstacle ball;
-    ball.solid = sphere(0.13f);
-    ball.path.start_m = {0, 1.25, 0};
-    go(ball.path, {0, -0.77, 0}, 1.0);
-    for (const double way_m : {0.22, -0.44, 0.44}) go(ball.path, {way_m, 0, 0}, 0.7);
+    ball.solid = sphere(0.14f);
+    ball.path.start_m = {0, 1.3, 0};
+    ball.path.legs.push_back({0.7, {0, 0, 0}});  // until the fire has grown
+    go(ball.path, {0, -0.8, 0}, 0.9);
+    for (const double way_m : {0.2, -0.4, 0.4}) go(ball.path, {way_m, 0, 0}, 0.7);
     scene.obstacles = {ball};
     // The stage's last solid is the ball: a rod that is as good as without length.
     scene.fire.stage.rods.push_back({{}, {}, ball.solid.half_size_m.x, fire::Rod::wood});
+    scene.fire.lights[1].position_m = {0.05f, 0.22f, 0.20f};  // not inside the ball
+    scene.fire.view.distance_m = 2.5f;
     scene.duration_s = ball.path.duration_s();
     return scene;
 }
@@ -69,7 +72,8 @@ class FireRun {
         setting.gap_m = kFlameGap_m;
         setting.dt_s = scene.fire.dt_s;
         setting.fastest_m_per_s = 34;
-        setting.why_fastest = "a tenth of the speed of sound in air, beyond which air would be pressed together";
+        setting.why_fastest =
+            "a tenth of the speed of sound in air, beyond which air would be pressed together";
         std::vector<Obstacle> obstacles = scene.obstacles;
         for (Obstacle& o : obstacles) o.path = faster(o.path, speed);
         return ObstacleSet(obstacles, setting);

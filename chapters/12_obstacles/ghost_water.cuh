@@ -7,26 +7,60 @@
 
 namespace obstacles {
 
-//! [ghost]
-/// Part of the poly6 kernel beyond a plane at distance q supports: the density, relative to that of rest,
-/// that a half space of water adds. A slice at z holds pi/4 (1 - z^2)^4 of (1 - q^2)^3; here is its integral.
-/// 1/2 at the plane itself.
+//! [planes]
+/// Part of the poly6 kernel beyond a plane at q supports: the density, relative to that of rest, that a half
+/// space of water adds. A slice of (1 - r^2)^3 at z holds pi/4 (1 - z^2)^4; here is its integral. 1/2 at the
+/// plane itself, and more than that behind it.
 inline __host__ __device__ float poly6_beyond(float q) {
     if (q >= 1) return 0;
-    q = fmaxf(q, 0.0f);
+    if (q <= -1) return 1;
     const float q2 = q * q;
     const float integral = q * (1 + q2 * (-4.0f / 3 + q2 * (6.0f / 5 + q2 * (-4.0f / 7 + q2 / 9))));
     return 315.0f / 256 * (128.0f / 315 - integral);
 }
 
-/// Slice of the spiky kernel at distance q supports, times h. By Gauss's theorem it is the pull of all the
-/// gradients in the half space beyond. Its integral is 1/2: with the pressure p on both sides, the plane
-/// carries exactly p.
+/// Slice of the spiky kernel at q supports, times h. By Gauss's theorem it is the sum of all the gradients in
+/// the half space beyond. It adds up to 1/2 over all q: with the pressure p in both waters, the plane carries
+/// exactly p.
 inline __host__ __device__ float spiky_slice(float q) {
-    const float left = 1 - fmaxf(q, 0.0f);
+    const float left = 1 - fabsf(q);
     return left > 0 ? 1.5f * left * left * left * left * (5 - 4 * left) : 0.0f;
 }
-//! [ghost]
+//! [planes]
+
+/// What the water in an obstacle's place would do to a particle at r.
+struct Ghost {
+    float density = 0;  ///< to add, over that of rest
+    glm::vec3 push{0};  ///< -h times the sum of spiky's gradients
+};
+
+//! [ghost_of]
+/// @param r  relative to the obstacle's middle
+inline __host__ __device__ Ghost ghost_of(const Solid& solid, glm::vec3 r, float h) {
+    if (solid.shape == Shape::sphere) {
+        const float radius = solid.half_size_m.x, distance = glm::length(r) - radius, q = distance / h;
+        if (q >= 1) return {};
+        // A sphere curves away from its tangent plane: at a distance s from where they touch by s^2 / 2R.
+        // What it lacks of the half space is, to first order in h / R, the slice's second moment over 2R.
+        const float inside = 1 - q * q, inside2 = inside * inside;
+        const float lacks = 315.0f / 2560 * h / radius * inside2 * inside2 * inside;
+        return {fmaxf(0.0f, poly6_beyond(q) - lacks),
+                spiky_slice(q) * fmaxf(0.0f, 1 - distance / radius) * outward(solid, r)};
+    }
+    // A box is what three slabs share. For a kernel that is a product, as a Gaussian is, its part in the box
+    // is the product of its parts in the slabs. Poly6 is not far from one.
+    glm::vec3 part, slice;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float near = (fabsf(r[axis]) - solid.half_size_m[axis]) / h;
+        const float far = (fabsf(r[axis]) + solid.half_size_m[axis]) / h;
+        if (near >= 1) return {};
+        part[axis] = poly6_beyond(near) - poly6_beyond(far);
+        slice[axis] = (r[axis] < 0 ? -1 : 1) * (spiky_slice(near) - spiky_slice(far));
+    }
+    return {part.x * part.y * part.z,
+            {slice.x * part.y * part.z, slice.y * part.x * part.z, slice.z * part.x * part.y}};
+}
+//! [ghost_of]
 
 /// The pass's parameters, by value.
 struct GhostPass {
@@ -44,11 +78,12 @@ __global__ void ghost_kernel(sph::WaterArrays water, Obstacles all, GhostPass pa
     if (i >= water.n) return;
     const glm::vec3 x = grid::xyz(water.position[i]);
     const float h = fluid.support_m, rho0 = fluid.rest_density_kg_per_m3;
-    float distance[kMaxObstacles], added = 0;
+    Ghost ghost[kMaxObstacles];
+    float added = 0;
     for (int k = 0; k < all.count; ++k) {
         const Moving& o = all.obstacle[k];
-        distance[k] = (signed_distance(o.solid, x - o.to_m) + pass.gap_m) / h;
-        added += rho0 * poly6_beyond(distance[k]);
+        ghost[k] = ghost_of(inflated(o.solid, -pass.gap_m), x - o.to_m, h);
+        added += rho0 * ghost[k].density;
     }
     if (!(added > 0)) return;  // far from all of them, as most particles are; or not a number
     const float rho = water.density[i] + added;
@@ -58,13 +93,11 @@ __global__ void ghost_kernel(sph::WaterArrays water, Obstacles all, GhostPass pa
     const float4 before = water.velocity[i];
     glm::vec3 v = grid::xyz(before);
     for (int k = 0; k < all.count; ++k) {
-        if (distance[k] >= 1) continue;
-        const Moving& o = all.obstacle[k];
         // A whole kick at the new place is half a one for this step and half a one for the next: leapfrog.
-        const float push = pass.dt_s * rho0 * 2 * term * spiky_slice(distance[k]) / h;
         const glm::vec3 was = v;
-        v += push * outward(o.solid, x - o.to_m);
+        v += pass.dt_s * rho0 * 2 * term / h * ghost[k].push;
         if (!pass.impulse) continue;
+        // Particles have been sorted since contact_kernel wrote here: it is the sum that counts.
         Impulse& sum = pass.impulse[k * water.n + i];
         sum.x += double(fluid.mass_kg) * (double(was.x) - v.x);
         sum.y += double(fluid.mass_kg) * (double(was.y) - v.y);

@@ -136,7 +136,9 @@ class ObstacleSet {
     const Setting& setting() const { return setting_; }
     /// Of all particles on obstacle k in the last step, in kg m/s. Only where two_way().
     glm::dvec3 impulse(int k) const { return received_[k]; }
-    std::size_t bytes() const { return impulse_.bytes(); }
+    std::size_t bytes_per_particle() const {
+        return two_way_ ? sizeof(Impulse) * std::size_t(now_.count) : 0;
+    }
     /// For passes that push particles in another way: n elements for each obstacle; nullptr if nobody feels
     /// it.
     Impulse* impulses() { return pass_.impulse; }
@@ -150,11 +152,13 @@ class ObstacleSet {
         ++steps_;
         const double dt = setting_.dt_s;
         for (int k = 0; k < now_.count; ++k) {
-            const glm::dvec3 from = motion_[k].position_m;
+            const Motion before = motion_[k];
             Motion& now = motion_[k];
+            bool even = true;
             switch (obstacles_[k].control) {
                 case Control::path:
                     now = obstacles_[k].path.at(double(steps_) * dt);
+                    even = false;
                     break;
                 case Control::hand:
                     now = towards(now, hand_m_[k]);
@@ -166,10 +170,11 @@ class ObstacleSet {
                     break;
             }
             Moving& o = now_.obstacle[k];
-            o.from_m = from;
+            o.from_m = before.position_m;
             o.to_m = now.position_m;
-            // Its mean velocity of this step, which for a curved path is not the one at either end.
-            o.velocity_m_per_s = (now.position_m - from) / dt;
+            // A hand and a leapfrog step have one velocity all through the step; a path has one at each end.
+            o.from_m_per_s = even ? now.velocity_m_per_s : before.velocity_m_per_s;
+            o.to_m_per_s = now.velocity_m_per_s;
         }
     }
     //! [move]

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "06_gl_interop/tank_view.cuh"
 #include "10_water_sph/run.cuh"
 #include "12_obstacles/ghost_water.cuh"
 
@@ -58,6 +59,11 @@ inline std::vector<WaterScene> water_scenes() {
 }
 //! [scenes]
 
+//! [fastest]
+/// Part of the water's sound speed that an obstacle may reach: see the stability map `push`.
+constexpr double kFastestPerSound = 0.25;
+//! [fastest]
+
 /// Everything that a run with water depends on.
 struct WaterSettings {
     WaterScene scene;
@@ -67,14 +73,8 @@ struct WaterSettings {
     float dt_s = 0;    ///< 0: the largest that the water allows
     double speed = 1;  ///< factor on the speed of written paths
     std::uint64_t seed = 1;
-    bool measure_forces =
-        false;  ///< add up the impulses on all obstacles, also on those that don't feel them
+    double fastest_per_sound = kFastestPerSound;
 };
-
-//! [fastest]
-/// Part of the water's sound speed that an obstacle may reach: see the stability map `push`.
-constexpr double kFastestPerSound = 0.25;
-//! [fastest]
 
 /// The same path, run through `factor` times as fast.
 inline Path faster(Path path, double factor) {
@@ -91,7 +91,9 @@ class WaterRun {
   public:
     /// @throws course::BadInput if the obstacles or the water are not what a run can start from
     explicit WaterRun(const WaterSettings& settings)
-        : settings_(settings), start_(make_water(settings)), obstacles_(make_obstacles(settings, start_)) {
+        : settings_(settings),
+          start_(sph::make_start(water_settings(settings))),
+          obstacles_(make_obstacles(settings, start_)) {
         const auto position = start_.water.positions().download();
         for (const float4& x : position)
             for (int k = 0; k < obstacles_.size(); ++k) {
@@ -103,17 +105,11 @@ class WaterRun {
             }
     }
 
-    void step() {
-        if (obstacles_.empty())
-            start_.water.step(start_.dt_s);  // not even a guest
-        else
-            obstacles::step(start_.water, obstacles_, settings_.skin);
-    }
+    void step() { obstacles::step(start_.water, obstacles_, settings_.skin); }
     /// @throws course::Unstable naming the step, the particle, and the likely cause
     void check_state(int step) {
         sph::check_state(start_.water, summarize_(start_.water), step, start_.dt_s);
     }
-    sph::Summary summary() { return summarize_(start_.water); }
 
     const sph::Water& water() const { return start_.water; }
     ObstacleSet& obstacles() { return obstacles_; }
@@ -125,21 +121,26 @@ class WaterRun {
     float spacing_m() const { return start_.spacing_m; }
     double particle_mass_kg() const { return start_.water.fluid().mass_kg; }
     double duration_s() const { return settings_.scene.duration_s / settings_.speed; }
-    const WaterSettings& settings() const { return settings_; }
-    glm::vec3 low_m() const { return corner(settings_.scene.water.tank.low_m); }
-    glm::vec3 high_m() const { return corner(settings_.scene.water.tank.high_m); }
-    /// Of a free fall from the top of the water: white in the picture.
-    float fastest_m_per_s() const { return 1.1f * start_.water.fluid().sound_speed_m_per_s / 6 * 1.4142f; }
+    /// As chapter 10 would be asked for the same water.
+    sph::Settings water_settings() const { return water_settings(settings_); }
+    interop::TankScene view() const {
+        interop::TankScene view;
+        view.tank = {corner(settings_.scene.water.tank.low_m), corner(settings_.scene.water.tank.high_m)};
+        view.radius_m = 0.55f * start_.spacing_m;
+        // White where water is as fast as a free fall from the top of the block makes it.
+        view.white_at_m_per_s = 1.1f * start_.water.fluid().sound_speed_m_per_s / 6 * 1.4142f;
+        return view;
+    }
 
   private:
     static glm::vec3 corner(float3 x) { return {x.x, x.y, x.z}; }
-    static sph::Start make_water(const WaterSettings& settings) {
+    static sph::Settings water_settings(const WaterSettings& settings) {
         sph::Settings water;
         water.scene = settings.scene.water;
         water.particles = settings.particles;
         water.dt_s = settings.dt_s;
         water.seed = settings.seed;
-        return sph::make_start(water);
+        return water;
     }
     static ObstacleSet make_obstacles(const WaterSettings& settings, const sph::Start& start) {
         if (!(settings.speed > 0 && settings.speed <= 1e6))
@@ -154,10 +155,9 @@ class WaterRun {
         setting.gravity_m_per_s2 = {fluid.gravity_m_per_s2.x, fluid.gravity_m_per_s2.y,
                                     fluid.gravity_m_per_s2.z};
         setting.dt_s = start.dt_s;
-        setting.fastest_m_per_s = kFastestPerSound * fluid.sound_speed_m_per_s;
+        setting.fastest_m_per_s = settings.fastest_per_sound * fluid.sound_speed_m_per_s;
         setting.why_fastest =
             "a quarter of the speed of sound in this water, beyond which it is no water any more";
-        setting.measure_forces = settings.measure_forces;
         std::vector<Obstacle> obstacles = settings.scene.obstacles;
         for (Obstacle& o : obstacles) o.path = faster(o.path, settings.speed);
         if (settings.control == Control::hand && !obstacles.empty()) obstacles[0].control = Control::hand;
