@@ -57,9 +57,9 @@ vec3 ground_albedo(vec2 place, float seen_m) {
         return mix(glaze, vec3(0.80, 0.82, 0.80), grout);
     }
     float lot = tile_number(floor(place / kSlab_m) + 11.0);
-    vec3 stone = mix(vec3(0.42, 0.38, 0.33), vec3(0.50, 0.46, 0.40), lot);
+    vec3 stone = mix(vec3(0.33, 0.30, 0.26), vec3(0.40, 0.365, 0.32), lot);
     float joint = max(lines(place.x, kSlab_m, 0.006, seen_m), lines(place.y, kSlab_m, 0.006, seen_m));
-    return mix(stone, vec3(0.22, 0.20, 0.18), joint);
+    return mix(stone, vec3(0.17, 0.155, 0.14), joint);
 }
 
 // The sun's light on the ground at `place`, as a part of what would arrive without water.

@@ -27,8 +27,8 @@ constexpr int kBlock = 4;  // nodes along the edge of a block of the map of free
 //! [free_ways]
 /// One thread per block of 4^3 cells: 0 if the surface may pass through it, else a number larger than all. A
 /// block looks at the nodes of its far faces too, which it shares with its neighbours.
-inline __global__ void find_surface_kernel(float* blocks_free, const float* volume, float iso, glm::ivec3 size,
-                                           glm::ivec3 blocks) {
+inline __global__ void find_surface_kernel(float* blocks_free, const float* volume, float iso,
+                                           glm::ivec3 size, glm::ivec3 blocks) {
     const int b = blockIdx.x * blockDim.x + threadIdx.x;
     if (b >= blocks.x * blocks.y * blocks.z) return;
     const glm::ivec3 first = kBlock * surface::item_of(b, blocks), last = glm::min(first + kBlock, size - 1);

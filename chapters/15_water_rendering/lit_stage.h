@@ -48,8 +48,8 @@ class LitStage {
     Framebuffer sky_;
 };
 
-/// Particles keep half a spacing off the glass, and a surface half a spacing off the particles' middles. What is
-/// nearer to a wall than this is taken to reach it.
+/// Particles keep half a spacing off the glass, and a surface half a spacing off the particles' middles. What
+/// is nearer to a wall than this is taken to reach it.
 inline float wall_gap_m(float spacing_m) {
     return 1.2f * spacing_m;
 }

@@ -37,14 +37,22 @@ struct Look {
     bool has_field() const { return drawing == Drawing::surface; }
     bool has_volume() const { return has_field() && (inside == Inside::marched || first_marched); }
     bool has_mesh() const { return has_field() && !first_marched; }
-    bool has_sunshine() const { return has_volume() && caustics; }
+    bool has_sunshine() const { return has_volume() && inside == Inside::marched && caustics; }
+    bool shows_thickness() const { return drawing == Drawing::screen_space || inside != Inside::marched; }
 };
 //! [Look]
+
+/// The screen shows no inside to march through: there the thickness has to do.
+inline Look checked(Look look) {
+    if (look.drawing == Drawing::screen_space && look.inside == Inside::marched)
+        look.inside = Inside::thickness;
+    return look;
+}
 
 /// Light and water of all scenes. Colours are linear.
 struct Light {
     glm::vec3 to_sun = glm::normalize(glm::vec3(-0.55f, 0.78f, -0.42f));
-    glm::vec3 sun{2.1f, 1.9f, 1.6f};    ///< on a surface that faces the sun
+    glm::vec3 sun{2.1f, 1.9f, 1.6f};     ///< on a surface that faces the sun
     glm::vec3 sky{0.42f, 0.52f, 0.66f};  ///< on a level surface, from all over the sky
     /// Of red, green and blue light. Clean water takes about a tenth of that: a tank is to look like a pool.
     glm::vec3 absorption_per_m{4.2f, 0.9f, 0.55f};

@@ -4,8 +4,10 @@
 #include <cstdio>
 #include <map>
 
+#include "15_water_rendering/explain.h"
+#include "15_water_rendering/panel.h"
 #include "15_water_rendering/recording.h"
-#include "15_water_rendering/water_view.cuh"
+#include "15_water_rendering/studies.cuh"
 #include "common/gl_context.h"
 #include "common/gpu_timer.h"
 #include "common/program.h"
@@ -14,7 +16,7 @@ namespace {
 
 using namespace water;
 
-constexpr int kStills = 9;         // of the time lapse: the start, the end, and seven evenly between
+constexpr int kStills = 9;          // of the time lapse: the start, the end, and seven evenly between
 constexpr int kStepsPerCheck = 10;  // an explosion doubles its speed in a few steps
 
 /// What this program can be asked for, beyond the options that all programs have.
@@ -27,7 +29,8 @@ struct Choices {
 
 /// The value that `names` gives to a name. @throws course::BadInput listing the names
 template <class Value>
-Value named(const std::string& option, const std::string& name, const std::vector<std::pair<std::string, Value>>& names) {
+Value named(const std::string& option, const std::string& name,
+            const std::vector<std::pair<std::string, Value>>& names) {
     std::string all;
     for (const auto& [known, value] : names) {
         if (known == name) return value;
@@ -56,13 +59,12 @@ Look make_look(const Choices& choices) {
     look.inside = named<Inside>(
         "--inside", choices.inside,
         {{"marched", Inside::marched}, {"thickness", Inside::thickness}, {"straight", Inside::straight}});
-    if (look.drawing == Drawing::screen_space && look.inside == Inside::marched) look.inside = Inside::thickness;
     look.schlick = choices.schlick;
     look.caustics = !choices.no_caustics;
     look.samples = choices.samples;
     look.nodes_per_spacing = choices.nodes;
     look.exposure = choices.exposure;
-    return look;
+    return checked(look);
 }
 
 /// Milliseconds of each pass, of all pictures that were drawn.
@@ -141,7 +143,8 @@ void run_headless(course::Program& program, const Choices& choices, const WaterS
         costs.add(large->clock());
         course::save_png(o.out / (scene.name + ".png"), large->image());
         program.result().picture(scene.name + ".png", course::format_number(o.steps * double(run.dt_s)) +
-                                                          " s after the start, step " + std::to_string(o.steps));
+                                                          " s after the start, step " +
+                                                          std::to_string(o.steps));
         if (film) program.result().note(film->finish());
     }
     if (lapse) {
@@ -155,16 +158,94 @@ void run_headless(course::Program& program, const Choices& choices, const WaterS
     program.result().table(steps);
 }
 
+/// The mouse moves the camera; with the right button, the ball, where there is one: in the plane of the
+/// picture.
+void steer(course::OrbitCamera& orbit, Wishes& wishes, const Stage& stage, course::WindowEvents events,
+           const course::Camera& camera, int height_px) {
+    if (stage.ball.radius_m > 0) {
+        const float metres_per_px =
+            2 * orbit.distance_m * std::tan(camera.field_of_view_rad / 2) / float(height_px);
+        const glm::mat3 to_world = glm::transpose(glm::mat3(camera.view()));
+        const glm::vec3 way_px(events.pan_x_px, -events.pan_y_px, 0);
+        const float r = stage.ball.radius_m;
+        wishes.ball_m = glm::clamp(wishes.ball_m + metres_per_px * (to_world * way_px), stage.tank_low_m + r,
+                                   stage.tank_high_m - r);
+        events.pan_x_px = events.pan_y_px = 0;
+    }
+    course::steer(orbit, events, height_px);
+}
+
+void run_window(course::Program& program, const Choices& choices, const WaterScene& scene, Model model) {
+    const course::ProgramOptions& o = program.options;
+    if (choices.draw == "none" || !choices.record.empty())
+        throw course::BadInput("--window draws, and records nothing: leave out --draw none and --record");
+    const auto restart = [&] { return make_run(scene, model, o.particles, o.dt_s, o.seed); };
+    std::unique_ptr<Run> run = restart();
+    const auto window = course::make_window(o.width, o.height, "Water: " + scene.name);
+    std::printf("%s\n", window->info().renderer.c_str());
+    std::printf(
+        "drag: orbit, right drag: move the ball (or the view), wheel: zoom, space: pause, S or right: step, "
+        "R: reset, 1 to 4: points, spheres, screen space, surface, P: picture, Esc: end\n");
+    if (!course::gui_available())
+        std::printf("no panel: Dear ImGui was missing when this was built (Debian: libimgui-dev)\n");
+    course::Gui gui(*window);
+    Wishes wishes;
+    wishes.look = make_look(choices);
+    wishes.ball_m = scene.stage.ball.middle_m;
+    std::optional<WaterView> view;
+    WaterScene seen = scene;  // its camera moves
+    int step = 0;
+    double step_ms = 0;
+    for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
+        course::WindowEvents events = window->poll();
+        const Look before = wishes.look;
+        gui.begin(events);
+        follow_keys(wishes, events);
+        steer(seen.view, wishes, scene.stage, events, seen.camera(), o.height);
+        if (view) draw_panel(wishes, scene.stage, view->clock(), step_ms);
+        if (!view || !same_view(before, wishes.look)) {
+            view.reset();  // free before asking for more
+            view.emplace(checked(wishes.look), scene, *run, o.width, o.height);
+            view->clock().on = true;
+        }
+        if (events.reset) {
+            run = restart();
+            step = 0;
+        }
+        if (events.step) wishes.paused = true;
+        if (!wishes.paused || events.step) {
+            const auto start = std::chrono::steady_clock::now();
+            run->lead_ball(wishes.ball_m);
+            run->step();
+            CUDA_CHECK(cudaDeviceSynchronize());
+            step_ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            if (++step % kStepsPerCheck == 0) run->check(step);
+        }
+        view->draw(*run, seen.camera());
+        if (events.screenshot) {
+            const std::string file = "screenshot_" + file_number(step) + ".png";
+            course::save_png(o.out / file, view->image());
+            std::printf("%s\n", (o.out / file).string().c_str());
+        }
+        window->copy(view->picture());
+        gui.end();
+        window->set_title(title(scene.name, view->clock(), step_ms));
+        window->swap();
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    course::Program program("15_water_rendering", "Water",
-                            "Light that is mirrored, bent and coloured by water: sky, tiles and sun in one tank");
+    course::Program program(
+        "15_water_rendering", "Water",
+        "Light that is mirrored, bent and coloured by water: sky, tiles and sun in one tank");
     program.options.particles = 16384;
     program.options.steps = 800;
     for (const WaterScene& scene : all_scenes()) program.scenes.push_back(scene.name);
     Choices choices;
-    program.option("--draw", choices.draw, "surface, screen (screen space), spheres, points, or none (no OpenGL)");
+    program.option("--draw", choices.draw,
+                   "surface, screen (screen space), spheres, points, or none (no OpenGL)");
     program.option("--inside", choices.inside, "light in the water: marched, thickness or straight");
     program.option("--model", choices.model, "sph (chapter 10) or marbles (chapter 09)");
     program.option("--samples", choices.samples, "rays of a pixel");
@@ -172,15 +253,32 @@ int main(int argc, char** argv) {
     program.option("--exposure", choices.exposure, "of the film");
     program.option("--record", choices.record, "film of the run: FILE.mp4 or FILE.gif");
     program.option("--every", choices.every, "steps from one frame of the film to the next");
-    program.option("--frames", choices.frames, "close the window after so many frames (0: when the user does)");
+    program.option("--frames", choices.frames,
+                   "close the window after so many frames (0: when the user does)");
     program.flag("--schlick", choices.schlick, "Schlick's formula in place of Fresnel's");
-    program.flag("--no-caustics", choices.no_caustics, "the sun shines on the ground as if there were no water");
+    program.flag("--no-caustics", choices.no_caustics,
+                 "the sun shines on the ground as if there were no water");
     program.flag("--no-lapse", choices.no_lapse, "one picture, no time lapse");
+    declare_studies(program);
     return program.run(argc, argv, [&] {
         const WaterScene scene = find_scene(all_scenes(), program.options.scene);
-        make_look(choices);  // says what is wrong before the long work
-        const Model model = named<Model>("--model", choices.model, {{"sph", Model::sph}, {"marbles", Model::marbles}});
+        const Look look = make_look(choices);  // says what is wrong before the long work
+        const Model model =
+            named<Model>("--model", choices.model, {{"sph", Model::sph}, {"marbles", Model::marbles}});
+        if (program.options.explain) {
+            std::printf("%s", explain(look, choices.draw != "none").c_str());
+            return;
+        }
         program.result().device = course::device_name();
+        // Start on the host, state on the device; the field's nodes, twice for smoothing and once as a
+        // texture.
+        const double n = program.options.particles, nodes = std::pow(double(look.nodes_per_spacing), 3);
+        course::require_memory(n * 300 + (look.has_field() ? 40 * sizeof(float) * n * nodes : 0) +
+                               80.0 * program.options.width * program.options.height);
+        if (program.options.window) {
+            run_window(program, choices, scene, model);
+            return;
+        }
         const std::unique_ptr<Run> run =
             make_run(scene, model, program.options.particles, program.options.dt_s, program.options.seed);
         run_headless(program, choices, scene, *run);

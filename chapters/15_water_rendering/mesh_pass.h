@@ -1,18 +1,14 @@
 /// @file
-/// The mesh of the water, drawn: which surface is seen first at each pixel, and how much water lies along the ray.
+/// The mesh of the water, drawn: which surface is seen first at each pixel, and how much water lies along the
+/// ray.
 #pragma once
+#include "14_surface_generation/mesh_renderer.h"
 #include "15_water_rendering/lit_stage.h"
 
 namespace water {
 
-/// Buffers of a mesh in OpenGL; positions and normals float4 each, three 32-bit indices a triangle.
-struct MeshBuffers {
-    GLuint position = 0, normal = 0, index = 0;
-    std::size_t triangles = 0;
-};
-
-/// What screen-space passes and mesh passes leave for water_view.frag: normal and distance of the first surface,
-/// and, if it is wanted, the thickness.
+/// What screen-space passes and mesh passes leave for water_view.frag: normal and distance of the first
+/// surface, and, if it is wanted, the thickness.
 struct FirstSurface {
     Framebuffer surface;
     std::optional<Framebuffer> thickness;
@@ -37,7 +33,8 @@ class MeshPass {
             all_.emplace(std::vector<std::string>{"water_mesh.vert", "water_mesh_thickness.frag"});
     }
 
-    void draw(const FirstSurface& to, const MeshBuffers& mesh, const Stage& stage, float gap_m, const Shot& shot) {
+    void draw(const FirstSurface& to, const surface::MeshBuffers& mesh, const Stage& stage, float gap_m,
+              const Shot& shot) {
         if (mesh.triangles) bind(mesh);
         to.surface.bind();
         glEnable(GL_DEPTH_TEST);
@@ -53,7 +50,7 @@ class MeshPass {
     }
 
   private:
-    void bind(const MeshBuffers& mesh) {
+    void bind(const surface::MeshBuffers& mesh) {
         glBindVertexArray(vertices_.id());
         for (const auto& [input, buffer] : {std::pair{0u, mesh.position}, std::pair{1u, mesh.normal}}) {
             glBindBuffer(GL_ARRAY_BUFFER, buffer);
@@ -62,8 +59,8 @@ class MeshPass {
         }
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.index);
     }
-    static void draw_with(const ShaderProgram& p, const MeshBuffers& mesh, const Stage& stage, float gap_m,
-                          const Shot& shot) {
+    static void draw_with(const ShaderProgram& p, const surface::MeshBuffers& mesh, const Stage& stage,
+                          float gap_m, const Shot& shot) {
         if (mesh.triangles == 0) return;
         p.use();
         shot.set(p);

@@ -84,7 +84,8 @@ struct Adding {
     ~Adding() { glDisable(GL_BLEND); }
 };
 
-/// A camera and the picture it makes. `shift_px`: by parts of a pixel, so that each sample sees another place.
+/// A camera and the picture it makes. `shift_px`: by parts of a pixel, so that each sample sees another
+/// place.
 struct Shot {
     course::Camera camera;
     int width_px, height_px;

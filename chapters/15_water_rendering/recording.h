@@ -45,7 +45,8 @@ class Recording {
         if (kind != ".mp4" && kind != ".gif")
             throw course::BadInput("--record writes .mp4 or .gif, not '" + file.string() + "'");
         if (width_px % 2 || height_px % 2)
-            throw course::BadInput("--record needs an even width and height: films store colour for 2 x 2 pixels");
+            throw course::BadInput(
+                "--record needs an even width and height: films store colour for 2 x 2 pixels");
         const std::filesystem::path ffmpeg = find_program("ffmpeg");
         if (ffmpeg.empty()) {
             frames_ = file;
@@ -57,7 +58,8 @@ class Recording {
         const std::string how =
             kind == ".mp4" ? "-c:v libx264 -pix_fmt yuv420p -crf 18 -movflags +faststart -f mp4 "
                            : "-filter_complex '[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse' -f gif ";
-        const std::string command = quoted(ffmpeg.string()) + " -loglevel error -y -f rawvideo -pix_fmt rgb24 -s " +
+        const std::string command = quoted(ffmpeg.string()) +
+                                    " -loglevel error -y -f rawvideo -pix_fmt rgb24 -s " +
                                     std::to_string(width_px) + "x" + std::to_string(height_px) + " -r " +
                                     std::to_string(frames_per_s) + " -i - " + how + quoted(part_.string());
         std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg ends early, a write is to fail, not this program

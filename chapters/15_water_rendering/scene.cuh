@@ -22,7 +22,8 @@ struct Body {
     bool holds(glm::vec3 x) const {
         const glm::vec3 off = (x - low_m) / size_m - 0.5f;  // -1/2 to 1/2
         if (round) return glm::dot(off, off) <= 0.25f;
-        return glm::all(glm::greaterThanEqual(off, glm::vec3(-0.5f))) && glm::all(glm::lessThan(off, glm::vec3(0.5f)));
+        return glm::all(glm::greaterThanEqual(off, glm::vec3(-0.5f))) &&
+               glm::all(glm::lessThan(off, glm::vec3(0.5f)));
     }
 };
 
@@ -59,20 +60,22 @@ inline std::vector<WaterScene> all_scenes() {
     };
     const glm::vec3 origin(0);
     // A cube of water along the left wall, held by a gate that is gone at t = 0.
-    WaterScene dam{"dam_break", {origin, {0.9f, 0.6f, 0.4f}, {}}, {{origin, {0.4f, 0.4f, 0.4f}}}, {}, {}};
-    dam.view = view({0.45f, 0.19f, 0.2f}, 1.75f, 0.5f, 0.2f);
+    WaterScene dam{"dam_break", {origin, {0.9f, 0.8f, 0.4f}, {}}, {{origin, {0.4f, 0.4f, 0.4f}}}, {}, {}};
+    dam.view = view({0.45f, 0.24f, 0.2f}, 1.8f, 0.5f, 0.2f);
     // A ball of water, as it falls into a pool.
     WaterScene drop{"drop", {origin, {0.6f, 0.5f, 0.6f}, {}}, {{origin, {0.6f, 0.1f, 0.6f}}}, {}, {}};
     drop.bodies.push_back({{0.2f, 0.2f, 0.2f}, {0.2f, 0.2f, 0.2f}, true, 1.5f});
     drop.view = view({0.3f, 0.13f, 0.3f}, 1.45f, 0.45f, 0.26f);
     // A pump throws water up from the floor of a pool.
-    WaterScene fountain{"fountain_into_pool", {origin, {0.6f, 0.6f, 0.6f}, {}}, {{origin, {0.6f, 0.16f, 0.6f}}}, {}, {}};
+    WaterScene fountain{
+        "fountain_into_pool", {origin, {0.6f, 0.6f, 0.6f}, {}}, {{origin, {0.6f, 0.16f, 0.6f}}}, {}, {}};
     fountain.pump = {{0.3f, 0.03f, 0.3f}, 0.032f, 0.11f, 3.4f};
     fountain.view = view({0.3f, 0.2f, 0.3f}, 1.6f, 0.45f, 0.22f);
     // Chapter 12's wave, and the ball that stands in its way.
-    WaterScene wave{"wave_around_sphere", {origin, {0.9f, 0.6f, 0.4f}, {}}, {{origin, {0.4f, 0.4f, 0.4f}}}, {}, {}};
+    WaterScene wave{
+        "wave_around_sphere", {origin, {0.9f, 0.6f, 0.4f}, {}}, {{origin, {0.4f, 0.4f, 0.4f}}}, {}, {}};
     wave.stage.ball = {{0.62f, 0.09f, 0.2f}, 0.09f};
-    wave.view = view({0.48f, 0.2f, 0.2f}, 1.65f, 0.5f, 0.22f);
+    wave.view = view({0.48f, 0.22f, 0.2f}, 1.72f, 0.5f, 0.22f);
     return {dam, drop, fountain, wave};
 }
 //! [scenes]
@@ -90,8 +93,8 @@ struct Start {
 };
 
 //! [fill]
-/// Calls add(place, body) for each point of a cubic lattice that lies in a body: layer by layer from the body's
-/// floor, what does not fit left free at its sides.
+/// Calls add(place, body) for each point of a cubic lattice that lies in a body: layer by layer from the
+/// body's floor, what does not fit left free at its sides.
 template <class Add>
 void for_each_point(const WaterScene& scene, float spacing_m, Add add) {
     for (const Body& body : scene.bodies) {
@@ -107,8 +110,8 @@ void for_each_point(const WaterScene& scene, float spacing_m, Add add) {
     }
 }
 
-/// Exactly `particles` of them: of the finest lattice that has so many or more, the last ones are left out. Each
-/// is moved by up to a twentieth of the spacing, as in chapter 10.
+/// Exactly `particles` of them: of the finest lattice that has so many or more, the last ones are left out.
+/// Each is moved by up to a twentieth of the spacing, as in chapter 10.
 inline Start fill(const WaterScene& scene, std::uint32_t particles, std::uint64_t seed) {
     Start start;
     double volume_m3 = 0;
@@ -124,7 +127,8 @@ inline Start fill(const WaterScene& scene, std::uint32_t particles, std::uint64_
     for_each_point(scene, start.spacing_m, [&](glm::vec3 place, const Body& body) {
         const std::uint32_t i = std::uint32_t(start.position.size());
         if (i == particles) return;
-        const auto random = r123::Philox4x32()({{i, 0, 0, 0}}, {{std::uint32_t(seed), std::uint32_t(seed >> 32)}});
+        const auto random =
+            r123::Philox4x32()({{i, 0, 0, 0}}, {{std::uint32_t(seed), std::uint32_t(seed >> 32)}});
         const glm::vec3 turn(random[0], random[1], random[2]);  // 0 to 2^32
         place += 0.05f * start.spacing_m * (turn * 0x1p-31f - 1.0f);
         place = glm::clamp(place, low, high);

@@ -1,5 +1,6 @@
 /// @file
-/// The water's motion, by chapter 09's model or chapter 10's, as pictures need it: particles, and one step more.
+/// The water's motion, by chapter 09's model or chapter 10's, as pictures need it: particles, and one step
+/// more.
 #pragma once
 #include <memory>
 #include <optional>
@@ -131,7 +132,7 @@ class BallRun : public Run {
         : run_(settings(scene, particles, wanted_dt_s, seed)), radius_m_(scene.stage.ball.radius_m) {
         spacing_m = run_.spacing_m();
         dt_s = run_.dt_s();
-        white_m_per_s = run_.fastest_m_per_s();
+        white_m_per_s = run_.view().white_at_m_per_s;
         lead_ball(scene.stage.ball.middle_m);
     }
     void step() override { run_.step(); }
@@ -166,8 +167,8 @@ class BallRun : public Run {
 };
 
 /// @throws course::BadInput if the model can't do the scene
-inline std::unique_ptr<Run> make_run(const WaterScene& scene, Model model, std::uint32_t particles, float dt_s,
-                                     std::uint64_t seed) {
+inline std::unique_ptr<Run> make_run(const WaterScene& scene, Model model, std::uint32_t particles,
+                                     float dt_s, std::uint64_t seed) {
     const bool plain = scene.stage.ball.radius_m == 0 && scene.pump.radius_m == 0;
     if (model == Model::marbles && !plain)
         throw course::BadInput("--model marbles knows neither pump nor ball: take dam_break or drop");

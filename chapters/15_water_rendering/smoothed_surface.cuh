@@ -8,8 +8,8 @@
 namespace water {
 
 //! [smooth]
-/// One block per brick, one thread per row of eight nodes: each node becomes the mean of itself (half) and its
-/// two neighbours along one axis (a quarter each). Where there is no brick the field is 0.
+/// One block per brick, one thread per row of eight nodes: each node becomes the mean of itself (half) and
+/// its two neighbours along one axis (a quarter each). Where there is no brick the field is 0.
 template <int kAxis>
 __global__ void smooth_kernel(float* smoothed, const float* field, const std::uint32_t* around) {
     const std::uint32_t b = blockIdx.x;
@@ -35,7 +35,8 @@ class SmoothedSurface {
         const std::size_t nodes = surface::kBrickNodes * std::size_t(from.brick_count());
         surface::make_room(field_, nodes);
         surface::make_room(other_, nodes);
-        CUDA_CHECK(cudaMemcpy(field_.data(), from.field().data(), nodes * sizeof(float), cudaMemcpyDeviceToDevice));
+        CUDA_CHECK(
+            cudaMemcpy(field_.data(), from.field().data(), nodes * sizeof(float), cudaMemcpyDeviceToDevice));
         for (int round = 0; round < rounds; ++round) {
             pass<0>();
             pass<1>();

@@ -19,7 +19,8 @@ class Sunshine {
         const glm::vec2 cast = -glm::vec2(light.to_sun.x, light.to_sun.z) / light.to_sun.y * (high.y - low.y);
         const glm::vec2 a(low.x, low.z), b(high.x, high.z);
         const float margin_m = 0.05f * glm::length(b - a);
-        const glm::vec2 map_low = glm::min(a, a + cast) - margin_m, map_high = glm::max(b, b + cast) + margin_m;
+        const glm::vec2 map_low = glm::min(a, a + cast) - margin_m,
+                        map_high = glm::max(b, b + cast) + margin_m;
         rectangle_m_ = glm::vec4(map_low, map_high - map_low);
         const float texel_m = std::max(rectangle_m_.z, rectangle_m_.w) / kTexels;
         const glm::ivec2 size = glm::max(glm::ivec2(1), glm::ivec2((map_high - map_low) / texel_m));

@@ -35,8 +35,7 @@ class SurfaceView {
           lit_(light, whole_),
           sum_(width_px, height_px),
           view_(shader_files(look)) {
-        const bool thickness = look.drawing == Drawing::screen_space || look.inside != Inside::marched;
-        if (!look.first_marched) first_.emplace(width_px, height_px, thickness);
+        if (!look.first_marched) first_.emplace(width_px, height_px, look.shows_thickness());
         if (look.has_field()) {
             surface::SurfaceSettings settings;
             settings.particle_spacing_m = spacing_m;
@@ -47,7 +46,7 @@ class SurfaceView {
         if (look.has_sunshine()) sunshine_.emplace(stage, light);
         if (look.has_mesh()) {
             mesh_.emplace();
-            mesh_pass_.emplace(thickness);
+            mesh_pass_.emplace(look.shows_thickness());
         }
         if (look.drawing == Drawing::screen_space) screen_.emplace(width_px, height_px);
         course::check_gl("making the water's view");
@@ -62,7 +61,8 @@ class SurfaceView {
         if (screen_) take_particles(position, count);
         if (sunshine_)
             time("sunshine", [&] {
-                sunshine_->draw(whole_, lit_.light().absorption_per_m, [&](const ShaderProgram& p) { set_scene(p); });
+                sunshine_->draw(whole_, lit_.light().absorption_per_m,
+                                [&](const ShaderProgram& p) { set_scene(p); });
             });
         sum_.clear();
         for (int k = 0; k < look_.samples; ++k) add_sample(count, camera, k);
@@ -109,10 +109,8 @@ class SurfaceView {
     void add_sample(std::uint32_t count, const course::Camera& camera, int k) {
         Shot shot{camera, picture().width(), picture().height(), sample_place(k)};
         if (mesh_pass_) {
-            MeshBuffers mesh;
-            if (!mesh_->empty())
-                mesh = {mesh_->position().id(), mesh_->normal().id(), mesh_->index().id(), mesh_->size().triangles};
-            time("first surface", [&] { mesh_pass_->draw(*first_, mesh, stage_, gap_m(), shot); });
+            time("first surface",
+                 [&] { mesh_pass_->draw(*first_, mesh_->buffers(), stage_, gap_m(), shot); });
         }
         if (screen_ && k == 0) {  // too dear for each sample
             shot.shift_px = {0, 0};

@@ -14,7 +14,8 @@ class WaterView {
         if (look.drawing == Drawing::points || look.drawing == Drawing::spheres) {
             interop::TankScene tank;
             tank.tank = {scene.stage.tank_low_m, scene.stage.tank_high_m};
-            tank.drawing = look.drawing == Drawing::points ? interop::Drawing::points : interop::Drawing::spheres;
+            tank.drawing =
+                look.drawing == Drawing::points ? interop::Drawing::points : interop::Drawing::spheres;
             tank.radius_m = 0.55f * run.spacing_m;
             tank.white_at_m_per_s = float(run.white_m_per_s);
             particles_.emplace(tank, std::max<std::size_t>(1, run.size()), width_px, height_px);
@@ -33,10 +34,13 @@ class WaterView {
             CUDA_CHECK(cudaDeviceSynchronize());
             glFinish();
         };
-        plain_clock_.time("particles", wait, [&] { particles_->draw(run.position(), run.velocity(), run.size(), camera); });
+        plain_clock_.time("particles", wait,
+                          [&] { particles_->draw(run.position(), run.velocity(), run.size(), camera); });
     }
 
-    const course::Framebuffer& picture() const { return surface_ ? surface_->picture() : particles_->picture(); }
+    const course::Framebuffer& picture() const {
+        return surface_ ? surface_->picture() : particles_->picture();
+    }
     course::Image image() const { return course::read_image(picture()); }
     PassClock& clock() { return surface_ ? surface_->clock() : plain_clock_; }
     const std::optional<SurfaceView>& surface() const { return surface_; }
