@@ -46,5 +46,13 @@ void main() {
     float cover = smoothstep(0.47, 0.74, clouds(1.3 * place + 4.0)) * smoothstep(0.0, 0.18, up);
     vec3 cloud = mix(vec3(0.78, 0.82, 0.9), vec3(1.35, 1.28, 1.18), smoothstep(0.4, 0.8, clouds(2.6 * place + 9.0)));
     sky = mix(sky, cloud, 0.8 * cover);
+
+    // Hills far away, in two ranges; the farther one is nearly as pale as the air before it.
+    float round = 3.1415927 * gl_FragCoord.x / picture_px.x;  // cos and sin of it twice: no seam
+    vec2 ring = vec2(cos(2.0 * round), sin(2.0 * round));
+    float far = 0.035 + 0.05 * clouds(4.0 * ring + 30.0), near = 0.010 + 0.045 * clouds(7.0 * ring + 50.0);
+    float pixel = 3.1415927 / picture_px.y;
+    sky = mix(vec3(0.40, 0.53, 0.66), sky, smoothstep(-pixel, pixel, height - far));
+    sky = mix(vec3(0.24, 0.34, 0.38), sky, smoothstep(-pixel, pixel, height - near));
     colour = vec4(sky, 1.0);
 }

@@ -32,7 +32,8 @@ struct Look {
     float nodes_per_spacing = 2;      ///< of the field
     int smoothing_rounds = 6;         ///< of the field
     float step_in_nodes = 1;          ///< of the march through it
-    float exposure = 0.8f;
+    int sunshine_texels = 500;        ///< along the longer side of the map of the sunshine
+    float exposure = 0.85f;
 
     bool has_field() const { return drawing == Drawing::surface; }
     bool has_volume() const { return has_field() && (inside == Inside::marched || first_marched); }

@@ -23,7 +23,7 @@ constexpr int kStepsPerCheck = 10;  // an explosion doubles its speed in a few s
 struct Choices {
     std::string draw = "surface", inside = "marched", model = "sph", record;
     int samples = 4, every = 10, frames = 0;
-    float nodes = 2, exposure = 0.8f;
+    float nodes = 2, exposure = 0.85f;
     bool schlick = false, no_caustics = false, no_lapse = false;
 };
 
@@ -112,7 +112,9 @@ void run_headless(course::Program& program, const Choices& choices, const WaterS
         program.result().note("OpenGL " + context->info().version + ", " + context->info().renderer);
         large.emplace(look, scene, run, o.width, o.height);
         large->clock().on = true;
-        if (lapse) small.emplace(look, scene, run, std::max(1, o.width / 3), std::max(1, o.height / 3));
+        Look little = look;
+        little.sunshine_texels /= 2;
+        if (lapse) small.emplace(little, scene, run, std::max(1, o.width / 3), std::max(1, o.height / 3));
         if (!choices.record.empty()) film.emplace(choices.record, o.width, o.height, 30);
     }
     const course::Camera camera = scene.camera();

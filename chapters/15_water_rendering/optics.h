@@ -35,7 +35,8 @@ Real fresnel_schlick(Real cosine, Real index) {
         cosine = std::sqrt(1 - sine2_beyond);
     }
     const Real head_on = (index - 1) / (index + 1), r0 = head_on * head_on;
-    return r0 + (1 - r0) * std::pow(1 - cosine, Real(5));
+    const Real missing = 1 - cosine, missing2 = missing * missing;
+    return r0 + (1 - r0) * missing2 * missing2 * missing;
 }
 //! [fresnel]
 

@@ -67,9 +67,9 @@ class StudyPictures {
   public:
     explicit StudyPictures(bool quick)
         : scene_(find_scene(all_scenes(), "wave_around_sphere")),
-          run_(make_run(scene_, Model::sph, quick ? 3000 : 16384, 0, 1)),
+          run_(make_run(scene_, Model::sph, quick ? 2000 : 8192, 0, 1)),
           context_(course::make_headless_context()),
-          width_px_(quick ? 160 : 480) {
+          width_px_(quick ? 128 : 320) {
         const int steps = int(0.45f / run_->dt_s);
         for (int k = 0; k < steps; ++k) run_->step();
     }
@@ -119,13 +119,18 @@ struct Method {
     Look look;
 };
 
-inline std::vector<Method> picture_methods() {
-    Look marched, schlick, no_caustics, thickness, straight, screen;
+inline std::vector<Method> picture_methods(bool quick) {
+    Look marched;
+    if (quick) marched.sunshine_texels = 100;
+    Look schlick = marched, no_caustics = marched, thickness = marched, straight = marched, screen = marched;
     schlick.schlick = true;
     no_caustics.caustics = false;
     thickness.inside = Inside::thickness;
     straight.inside = Inside::straight;
     screen.drawing = Drawing::screen_space;
+    if (quick)
+        return {
+            {"mesh, marched", marched}, {"mesh, thickness", thickness}, {"screen space", checked(screen)}};
     return {{"mesh, marched", marched},
             {"mesh, marched, Schlick", schlick},
             {"mesh, marched, no caustics", no_caustics},
@@ -139,17 +144,18 @@ inline void study_picture(course::Study& study) {
     StudyPictures pictures(study.quick);
     study.backend = "opengl";
     study.device = pictures.renderer();
-    Look finest;
-    finest.samples = study.quick ? 16 : 64;
+    const std::vector<Method> methods = picture_methods(study.quick);
+    Look finest = methods.front().look;
+    finest.samples = study.quick ? 9 : 64;
     finest.step_in_nodes = 0.5f;
     const std::vector<float> truth = pictures.draw(finest, 1);
     const std::vector<int> samples = study.quick ? std::vector<int>{1, 4} : std::vector<int>{1, 4, 16};
-    study.expect(int(samples.size() * picture_methods().size()));
-    for (Method method : picture_methods())
+    study.expect(int(samples.size() * methods.size()));
+    for (Method method : methods)
         for (const int s : samples) {
             method.look.samples = s;
             course::Timing time;
-            const std::vector<float> light = pictures.draw(method.look, study.quick ? 1 : 3, &time);
+            const std::vector<float> light = pictures.draw(method.look, study.quick ? 1 : 2, &time);
             study.add({method.name, double(s), double(pictures.size()), difference(light, truth), time});
         }
 }
@@ -176,13 +182,13 @@ inline void study_resolution(course::Study& study) {
         return look;
     };
     for (const bool marched : {true, false}) {
-        Look look;
+        Look look = picture_methods(study.quick).front().look;
         look.samples = study.quick ? 1 : 4;
         if (!marched) look.inside = Inside::thickness;
         const std::vector<float> truth = pictures.draw(with_nodes(look, study.quick ? 3 : 5), 1);
         for (const float n : nodes) {
             course::Timing time;
-            const std::vector<float> light = pictures.draw(with_nodes(look, n), study.quick ? 1 : 3, &time);
+            const std::vector<float> light = pictures.draw(with_nodes(look, n), study.quick ? 1 : 2, &time);
             study.add({marched ? "mesh, marched" : "mesh, thickness", n, double(pictures.size()),
                        difference(light, truth), time});
         }

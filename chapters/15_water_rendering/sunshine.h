@@ -10,7 +10,8 @@ namespace water {
 /// A map of the ground: the part of the sun's light that arrives. 1 where no water is in the way.
 class Sunshine {
   public:
-    Sunshine(const Stage& stage, const Light& light)
+    /// @param texels  along its longer side
+    Sunshine(const Stage& stage, const Light& light, int texels)
         : trace_({"fullscreen.vert", "sunshine_trace.frag", "water_path.frag", "water_tank.frag",
                   "water_stage.frag", "water_optics.frag"}),
           splat_({"sunshine_splat.vert", "sunshine_splat.frag"}) {
@@ -22,7 +23,7 @@ class Sunshine {
         const glm::vec2 map_low = glm::min(a, a + cast) - margin_m,
                         map_high = glm::max(b, b + cast) + margin_m;
         rectangle_m_ = glm::vec4(map_low, map_high - map_low);
-        const float texel_m = std::max(rectangle_m_.z, rectangle_m_.w) / kTexels;
+        const float texel_m = std::max(rectangle_m_.z, rectangle_m_.w) / float(texels);
         const glm::ivec2 size = glm::max(glm::ivec2(1), glm::ivec2((map_high - map_low) / texel_m));
         map_.emplace(size.x, size.y, GL_RGBA32F, Framebuffer::Depth::none);
         read_smoothly(map_->colour());
@@ -64,7 +65,6 @@ class Sunshine {
     glm::vec4 rectangle_m() const { return rectangle_m_; }
 
   private:
-    static constexpr int kTexels = 600;          // along the longer side
     static constexpr int kPhotonsPerTexel2 = 3;  // times 1/2: of photons along an axis, for each texel
     glm::vec4 rectangle_m_;
     std::optional<Framebuffer> map_, landings_;

@@ -43,7 +43,7 @@ class SurfaceView {
             surface_.emplace(settings);
         }
         if (look.has_volume()) volume_.emplace();
-        if (look.has_sunshine()) sunshine_.emplace(stage, light);
+        if (look.has_sunshine()) sunshine_.emplace(stage, light, look.sunshine_texels);
         if (look.has_mesh()) {
             mesh_.emplace();
             mesh_pass_.emplace(look.shows_thickness());

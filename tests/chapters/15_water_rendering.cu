@@ -73,6 +73,7 @@ std::vector<glm::vec4> read_texels(const Framebuffer& framebuffer) {
 Look one_ray() {
     Look look;
     look.samples = 1;
+    look.sunshine_texels = 150;
     return look;
 }
 
@@ -177,7 +178,7 @@ TEST_CASE("smoothing: as a loop on the host; the sum stays") {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.3f, 0.6f);
     std::vector<float4> cloud;
-    for (int k = 0; k < 60; ++k) cloud.push_back(make_float4(unit(random), unit(random), unit(random), 0));
+    for (int k = 0; k < 900; ++k) cloud.push_back(make_float4(unit(random), unit(random), unit(random), 0));
     const course::DeviceBuffer<float4> particles(cloud);
     surface::SurfaceSettings settings;
     settings.particle_spacing_m = 0.03f;
@@ -316,17 +317,17 @@ TEST_CASE("sunshine: bent as Snell says, and no light is lost on the map") {
             leaving += 1;
             arriving += l.z * std::exp(-light.absorption_per_m.y * l.w);
         }
-        // Landed on the floor well off the walls: these came through the level surface.
+        // Landed well off the walls with nearly all of its light: through no pane, so through the level
+        // surface.
         const bool middle = l.x > 0.15f && l.x < 0.3f && l.y > 0.15f && l.y < 0.3f && l.w > 0;
-        if (!middle) continue;
+        if (!middle || l.z < 0.95f) continue;
         ++through_the_top;
         const double moved = glm::distance(glm::vec2(l.x, l.y), straight);
-        // The march finds the surface to a part of a node (10 mm), of about 240 mm of water; the normal is
-        // level.
-        CHECK(std::abs(moved / l.w - slower) <= 0.02);
-        CHECK(std::abs(l.z - (1 - fresnel_exact(double(light.to_sun.y), kWaterIndex))) <= 0.005);
+        // The lattice's rows are dents of a few thousandths in the normal, and as much in both.
+        CHECK(std::abs(moved / l.w - slower) <= 0.004);
+        CHECK(std::abs(l.z - (1 - fresnel_exact(double(light.to_sun.y), kWaterIndex))) <= 0.002);
     }
-    CHECK(through_the_top > 1000);
+    CHECK(through_the_top > 300);
     for (const glm::vec4& texel : read_texels(sunshine.map())) on_map += texel.y - 1;
     const double photons_per_texel =
         double(width) * height / (double(sunshine.map().width()) * sunshine.map().height());
@@ -334,23 +335,28 @@ TEST_CASE("sunshine: bent as Snell says, and no light is lost on the map") {
     CHECK(std::abs(on_map - (arriving - leaving) / photons_per_texel) <= 0.01 * leaving / photons_per_texel);
 }
 
-TEST_CASE("sunshine: without water all of it arrives; behind a ball none") {
+TEST_CASE("sunshine: without water none is brighter than the sun; a ball's shadow is an ellipse") {
     const auto context = context_or_skip();
     const Pool pool;
-    SurfaceView view(32, 18, one_ray(), pool.stage, pool.spacing_m);
+    Look look = one_ray();
+    look.sunshine_texels = 500;
+    SurfaceView view(32, 18, look, pool.stage, pool.spacing_m);
     view.draw(nullptr, 0, {{0.2f, 0.15f, 0.2f}, 0.1f}, pool.camera());
-    int dark = 0, lit = 0, other = 0;
-    for (const glm::vec4& texel : read_texels(view.sunshine()->map())) {
-        if (std::abs(texel.x) < 1e-3f)
-            ++dark;
-        else if (texel.x > 0.7f)  // behind panes: each takes 8 to 20 %
-            ++lit;
-        else
-            ++other;
+    const Sunshine& sunshine = *view.sunshine();
+    double missing = 0;
+    int too_bright = 0;
+    for (const glm::vec4& texel : read_texels(sunshine.map())) {
+        missing += texel.x < 1e-3f;
+        too_bright += texel.x > 1.001f;
     }
-    CHECK(dark > 1000);
-    CHECK(lit > 10 * dark);
-    CHECK(other < dark);  // the shadow's rim
+    // The shadow of a ball on level ground is an ellipse, longer by the sine of the sun's height.
+    const glm::vec4 r = sunshine.rectangle_m();
+    const double texel_m2 = double(r.z) * r.w / (double(sunshine.map().width()) * sunshine.map().height());
+    const double shadow_m2 = kPi * 0.1 * 0.1 / Light().to_sun.y;
+    // The rim is 4 texels wide, half of it lit: 2 texels of 1.5 mm all around 0.1 m, 3 %, are lost to it.
+    CHECK(missing * texel_m2 < shadow_m2);
+    CHECK(missing * texel_m2 > 0.95 * shadow_m2);
+    CHECK(too_bright == 0);
 }
 
 TEST_CASE("first surface: the mesh lies where the march finds the field's surface") {
@@ -380,8 +386,9 @@ TEST_CASE("white furnace: in a world that is equally bright everywhere, water is
     const auto context = context_or_skip();
     // The shaders as they are, but with a stage whose every colour is 1.
     const gl_test::TemporaryFolder folder;
-    std::filesystem::copy(course::shader_folder(), folder.path,
-                          std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy(
+        course::shader_folder(), folder.path,
+        std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
     std::ofstream(folder.path / "water_stage.frag") << R"(#version 330 core
 uniform vec3 tank_low_m;
 uniform vec4 ball_m;

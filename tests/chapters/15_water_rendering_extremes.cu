@@ -52,6 +52,7 @@ TEST_CASE("extremes: no water, one particle, all at one point, NaN among them, o
         Look look;
         look.drawing = drawing;
         look.samples = 1;
+        look.sunshine_texels = 150;
         SurfaceView view(64, 36, checked(look), stage, 0.02f);
         std::vector<float> empty;
         for (const std::vector<float4>& water : waters) {
@@ -60,7 +61,8 @@ TEST_CASE("extremes: no water, one particle, all at one point, NaN among them, o
             view.draw(particles.data(), std::uint32_t(water.size()), {}, orbit.camera());
             check_light(view.light());
             if (water.empty()) empty = view.light();
-            if (water.size() == 1) CHECK(view.light() != empty);  // one particle is seen
+            // A sphere on the screen is seen, if it is alone; smoothing takes it from a surface.
+            if (water.size() == 1 && drawing == Drawing::screen_space) CHECK(view.light() != empty);
         }
     }
 }
@@ -79,6 +81,7 @@ TEST_CASE("extremes: the eye in the water, on the glass, straight above; a tank 
         const course::DeviceBuffer<float4> particles(water);
         Look look;
         look.samples = 1;
+        look.sunshine_texels = 150;
         SurfaceView view(64, 36, look, stage, 0.04f);
         const glm::vec3 middle = stage.tank_low_m + glm::vec3(0.25f, 0.1f, 0.2f);
         for (const glm::vec3 eye : {middle, stage.tank_low_m + glm::vec3(0.25f, 0.1f, 0.4f),
@@ -97,7 +100,7 @@ TEST_CASE("input: what can't be done is said in one sentence") {
     const std::string out = folder.path().string();
     const auto refused = [&](const std::string& arguments, const std::string& part) {
         const course::ProgramRun run =
-            course::run_program("ch15_water_rendering", kSmall + out + " " + arguments);
+            course::run_program("ch15_water_rendering", "--steps 1 --out " + out + " " + arguments);
         CAPTURE(arguments);
         CAPTURE(run.output);
         CHECK(run.exit_code == 2);
@@ -110,9 +113,9 @@ TEST_CASE("input: what can't be done is said in one sentence") {
     refused("--samples 0", "--samples must be from 1");
     refused("--nodes nan", "--nodes");
     refused("--nodes 8 --particles 2000000000", "bytes");
-    refused("--record film.avi", "--record writes .mp4 or .gif");
-    refused("--record film.mp4 --width 63", "even width");
-    refused("--width 100000", "OpenGL can't draw a picture");
+    refused("--record film.avi --particles 100", "--record writes .mp4 or .gif");
+    refused("--record film.mp4 --particles 100 --width 63", "even width");
+    refused("--particles 100 --width 100000", "OpenGL can't draw a picture");
 }
 
 TEST_CASE("headless numbers: no OpenGL at all") {
