@@ -125,3 +125,6 @@ vec3 follow(vec3 p, vec3 towards, bool in_water, float seen_per_m, float way_m) 
 
 // Is there water behind the pane at p? Then light goes from air to glass to water, and the glass does not matter.
 bool wet_pane(vec3 p, vec3 pane, vec3 towards, float way_m) { return water_at(p) > 0.0; }
+
+// The direction of a ray from air after it has gone into the water.
+vec3 way_in(vec3 towards, vec3 normal) { return refract(towards, normal, 1.0 / kWaterIndex); }

@@ -50,9 +50,9 @@ void main() {
     // Hills far away, in two ranges; the farther one is nearly as pale as the air before it.
     float round = 3.1415927 * gl_FragCoord.x / picture_px.x;  // cos and sin of it twice: no seam
     vec2 ring = vec2(cos(2.0 * round), sin(2.0 * round));
-    float far = 0.035 + 0.05 * clouds(4.0 * ring + 30.0), near = 0.010 + 0.045 * clouds(7.0 * ring + 50.0);
+    float far = 0.075 * clouds(5.0 * ring + 30.0) - 0.012, near = 0.06 * clouds(9.0 * ring + 50.0) - 0.022;
     float pixel = 3.1415927 / picture_px.y;
-    sky = mix(vec3(0.40, 0.53, 0.66), sky, smoothstep(-pixel, pixel, height - far));
-    sky = mix(vec3(0.24, 0.34, 0.38), sky, smoothstep(-pixel, pixel, height - near));
+    sky = mix(vec3(0.52, 0.65, 0.80), sky, smoothstep(-pixel, pixel, height - far));
+    sky = mix(vec3(0.38, 0.50, 0.57), sky, smoothstep(-pixel, pixel, height - near));
     colour = vec4(sky, 1.0);
 }

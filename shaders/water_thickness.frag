@@ -9,6 +9,7 @@ uniform vec3 absorption_per_m;
 uniform vec3 scattered;
 uniform float scattering_per_m;
 
+const float kWaterIndex = 1.333;
 const float kNever = 1e9;
 
 vec3 ground_colour(vec3 p, float seen_m);                                                     // water_stage.frag
@@ -23,6 +24,9 @@ bool wet_pane(vec3 p, vec3 pane, vec3 towards, float way_m) {
     vec3 normal;
     return first_water(p, towards, way_m, kNever, normal) * -dot(pane, towards) < 1.5 * wall_gap_m;
 }
+
+// The direction of a ray from air after it has gone into the water.
+vec3 way_in(vec3 towards, vec3 normal) { return bend ? refract(towards, normal, 1.0 / kWaterIndex) : towards; }
 
 //! [thickness]
 vec3 follow(vec3 p, vec3 towards, bool in_water, float seen_per_m, float way_m) {

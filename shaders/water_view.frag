@@ -21,6 +21,7 @@ vec3 behind_glass(vec3 seen, vec3 p, vec3 normal, float seen_m);       // water_
 float first_water(vec3 p, vec3 towards, float way_m, float limit_m, out vec3 normal);  // water_first_*.frag
 bool wet_pane(vec3 p, vec3 pane, vec3 towards, float way_m);           // water_path.frag or water_thickness.frag
 vec3 follow(vec3 p, vec3 towards, bool in_water, float seen_per_m, float way_m);       // the same
+vec3 way_in(vec3 towards, vec3 normal);                                                 // the same
 
 //! [surface_light]
 // The light from a surface of water at p: what it mirrors and what comes through it, each with its part.
@@ -28,7 +29,7 @@ vec3 surface_light(vec3 p, vec3 towards, vec3 normal, float way_m) {
     if (dot(normal, towards) > 0.0) normal = reflect(normal, towards);  // seen from behind by a hair's breadth
     float mirrored = fresnel(min(1.0, -dot(normal, towards)), kWaterIndex);
     return mirrored * follow(p, reflect(towards, normal), false, pixel_rad, way_m) +
-           (1.0 - mirrored) * follow(p, refract(towards, normal, 1.0 / kWaterIndex), true, pixel_rad, way_m);
+           (1.0 - mirrored) * follow(p, way_in(towards, normal), true, pixel_rad, way_m);
 }
 //! [surface_light]
 
@@ -36,7 +37,7 @@ vec3 surface_light(vec3 p, vec3 towards, vec3 normal, float way_m) {
 vec3 wet_pane_light(vec3 p, vec3 towards, vec3 pane, float way_m) {
     float mirrored = fresnel(min(1.0, -dot(pane, towards)), kWaterIndex);
     return mirrored * stage(p, reflect(towards, pane), pixel_rad, true) +
-           (1.0 - mirrored) * follow(p, refract(towards, pane, 1.0 / kWaterIndex), true, pixel_rad, way_m);
+           (1.0 - mirrored) * follow(p, way_in(towards, pane), true, pixel_rad, way_m);
 }
 
 // The light from inside the tank, for a ray that is at p in its air.

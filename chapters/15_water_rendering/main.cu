@@ -24,7 +24,7 @@ struct Choices {
     std::string draw = "surface", inside = "marched", model = "sph", record;
     int samples = 4, every = 10, frames = 0;
     float nodes = 2, exposure = 0.85f;
-    bool schlick = false, no_caustics = false, no_lapse = false;
+    bool schlick = false, no_caustics = false, no_lapse = false, compare = false;
 };
 
 /// The value that `names` gives to a name. @throws course::BadInput listing the names
@@ -100,6 +100,24 @@ std::string file_number(int number) {
     return text;
 }
 
+/// The same water at the same moment, from the cheapest picture to the dearest.
+course::Image side_by_side(const Look& look, const WaterScene& scene, const Run& run, int width_px,
+                           int height_px) {
+    std::vector<Look> ways(6, look);
+    ways[0].drawing = Drawing::points;
+    ways[1].drawing = Drawing::spheres;
+    ways[2].drawing = Drawing::screen_space;
+    ways[3].inside = Inside::straight;
+    ways[4].inside = Inside::thickness;
+    std::vector<course::Image> pictures;
+    for (const Look& way : ways) {
+        WaterView view(checked(way), scene, run, width_px, height_px);
+        view.draw(run, scene.camera());
+        pictures.push_back(view.image());
+    }
+    return course::contact_sheet(pictures, 2);
+}
+
 void run_headless(course::Program& program, const Choices& choices, const WaterScene& scene, Run& run) {
     const course::ProgramOptions& o = program.options;
     std::unique_ptr<course::GlContext> context;  // before the views: their objects must go first
@@ -153,6 +171,13 @@ void run_headless(course::Program& program, const Choices& choices, const WaterS
         while (int(stills.size()) < kStills) stills.push_back(stills.back());  // fewer steps than stills
         course::save_png(o.out / "time_lapse.png", course::contact_sheet(stills, 3));
         program.result().picture("time_lapse.png", "Time lapse, row by row");
+    }
+    if (draws && choices.compare) {
+        const course::Image sheet =
+            side_by_side(look, scene, run, std::max(1, o.width / 2), std::max(1, o.height / 2));
+        course::save_png(o.out / "ways.png", sheet);
+        program.result().picture(
+            "ways.png", "Points, spheres; screen space, not bent; bent once, followed through the field");
     }
     if (!costs.empty()) program.result().table(costs.table());
     course::Table steps("Steps", {"particles", "spacing (m)", "dt (s)", "steps", "ms per step"});
@@ -260,6 +285,7 @@ int main(int argc, char** argv) {
     program.flag("--schlick", choices.schlick, "Schlick's formula in place of Fresnel's");
     program.flag("--no-caustics", choices.no_caustics,
                  "the sun shines on the ground as if there were no water");
+    program.flag("--compare", choices.compare, "one more picture: the same water drawn in six ways");
     program.flag("--no-lapse", choices.no_lapse, "one picture, no time lapse");
     declare_studies(program);
     return program.run(argc, argv, [&] {

@@ -69,7 +69,7 @@ inline std::vector<WaterScene> all_scenes() {
     // A pump throws water up from the floor of a pool.
     WaterScene fountain{
         "fountain_into_pool", {origin, {0.6f, 0.6f, 0.6f}, {}}, {{origin, {0.6f, 0.16f, 0.6f}}}, {}, {}};
-    fountain.pump = {{0.3f, 0.03f, 0.3f}, 0.032f, 0.11f, 3.4f};
+    fountain.pump = {{0.3f, 0.03f, 0.3f}, 0.032f, 0.11f, 2.8f};
     fountain.view = view({0.3f, 0.2f, 0.3f}, 1.6f, 0.45f, 0.22f);
     // Chapter 12's wave, and the ball that stands in its way.
     WaterScene wave{

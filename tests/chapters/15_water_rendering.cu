@@ -353,9 +353,10 @@ TEST_CASE("sunshine: without water none is brighter than the sun; a ball's shado
     const glm::vec4 r = sunshine.rectangle_m();
     const double texel_m2 = double(r.z) * r.w / (double(sunshine.map().width()) * sunshine.map().height());
     const double shadow_m2 = kPi * 0.1 * 0.1 / Light().to_sun.y;
-    // The rim is 4 texels wide, half of it lit: 2 texels of 1.5 mm all around 0.1 m, 3 %, are lost to it.
+    // Photons are spread 2 texels of 1.5 mm around where they land: 3 mm of the radius, 6 % of the area, are
+    // rim.
     CHECK(missing * texel_m2 < shadow_m2);
-    CHECK(missing * texel_m2 > 0.95 * shadow_m2);
+    CHECK(missing * texel_m2 > 0.93 * shadow_m2);
     CHECK(too_bright == 0);
 }
 
@@ -425,6 +426,31 @@ vec3 stage(vec3 from, vec3 towards, float seen_per_m, bool with_sun) { return ve
         CHECK(glass < 64 * 36 / 4);
     }
     unsetenv("COURSE_SHADER_DIR");
+}
+
+TEST_CASE("straight, bent, dry: water that is not bent and not coloured shows what is there without it") {
+    const auto context = context_or_skip();
+    const Pool pool(0.12f);
+    const course::DeviceBuffer<float4> particles(pool.particles);
+    Light clear;
+    clear.absorption_per_m = glm::vec3(0);
+    clear.scattering_per_m = 0;
+    const auto light = [&](Inside inside, bool wet) {
+        Look look = one_ray();
+        look.inside = inside;
+        SurfaceView view(96, 54, look, pool.stage, pool.spacing_m, clear);
+        view.draw(particles.data(), wet ? std::uint32_t(pool.particles.size()) : 0, {}, pool.camera());
+        return view.light();
+    };
+    const std::vector<float> dry = light(Inside::straight, false), straight = light(Inside::straight, true),
+                             bent = light(Inside::thickness, true);
+    double off_straight = 0, off_bent = 0;
+    for (std::size_t k = 0; k < dry.size(); ++k) {
+        off_straight += std::abs(straight[k] - dry[k]);
+        off_bent += std::abs(bent[k] - dry[k]);
+    }
+    // What is mirrored differs in both; tiles stay in their places in one only.
+    CHECK(off_straight < 0.5 * off_bent);
 }
 
 // ------------------------------------------------------------------------------------------ what is left out

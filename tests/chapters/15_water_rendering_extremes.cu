@@ -112,10 +112,10 @@ TEST_CASE("input: what can't be done is said in one sentence") {
     refused("--scene fountain_into_pool --model marbles", "knows neither pump nor ball");
     refused("--samples 0", "--samples must be from 1");
     refused("--nodes nan", "--nodes");
-    refused("--nodes 8 --particles 2000000000", "bytes");
+    refused("--nodes 8 --particles 2000000000", "GiB of memory");
     refused("--record film.avi --particles 100", "--record writes .mp4 or .gif");
     refused("--record film.mp4 --particles 100 --width 63", "even width");
-    refused("--particles 100 --width 100000", "OpenGL can't draw a picture");
+    refused("--particles 100 --width 100000", "--width must be");
 }
 
 TEST_CASE("headless numbers: no OpenGL at all") {
