@@ -43,10 +43,13 @@ struct Look {
 };
 //! [Look]
 
-/// The screen shows no inside to march through: there the thickness has to do.
+/// A look whose parts go together. The screen shows no inside to march through: there the thickness has to
+/// do. And whoever marches from the eye to the water marches on in it.
 inline Look checked(Look look) {
     if (look.drawing == Drawing::screen_space && look.inside == Inside::marched)
         look.inside = Inside::thickness;
+    if (look.drawing != Drawing::surface) look.first_marched = false;
+    if (look.first_marched) look.inside = Inside::marched;
     return look;
 }
 

@@ -29,26 +29,26 @@ class SurfaceView {
     /// @throws course::BadInput if a shader does not compile or the picture is too large for the driver
     SurfaceView(int width_px, int height_px, const Look& look, const Stage& stage, float spacing_m,
                 const Light& light = {})
-        : look_(look),
+        : look_(checked(look)),
           stage_(stage),
           spacing_m_(spacing_m),
           lit_(light, whole_),
           sum_(width_px, height_px),
-          view_(shader_files(look)) {
-        if (!look.first_marched) first_.emplace(width_px, height_px, look.shows_thickness());
-        if (look.has_field()) {
+          view_(shader_files(look_)) {
+        if (!look_.first_marched) first_.emplace(width_px, height_px, look_.shows_thickness());
+        if (look_.has_field()) {
             surface::SurfaceSettings settings;
             settings.particle_spacing_m = spacing_m;
-            settings.nodes_per_spacing = look.nodes_per_spacing;
+            settings.nodes_per_spacing = look_.nodes_per_spacing;
             surface_.emplace(settings);
         }
-        if (look.has_volume()) volume_.emplace();
-        if (look.has_sunshine()) sunshine_.emplace(stage, light, look.sunshine_texels);
-        if (look.has_mesh()) {
+        if (look_.has_volume()) volume_.emplace();
+        if (look_.has_sunshine()) sunshine_.emplace(stage, light, look_.sunshine_texels);
+        if (look_.has_mesh()) {
             mesh_.emplace();
-            mesh_pass_.emplace(look.shows_thickness());
+            mesh_pass_.emplace(look_.shows_thickness());
         }
-        if (look.drawing == Drawing::screen_space) screen_.emplace(width_px, height_px);
+        if (look_.drawing == Drawing::screen_space) screen_.emplace(width_px, height_px);
         course::check_gl("making the water's view");
     }
 
