@@ -71,8 +71,9 @@ class Blobs {
             round_blob_kernel<<<blocks, kThreads>>>(unsorted_.data(), position, shape_.radius_m, n);
         }
         CUDA_CHECK(cudaGetLastError());
-        // Blobs have moved towards their neighbours, so never out of the box; but into other cells.
-        sort_.build(unsorted_.data(), n, box, field_.reach_m);
+        // Blobs have moved towards their neighbours, so never out of the box; but into other cells. Half the
+        // reach wide, five cells across hold what is in reach more tightly than three cells of all of it.
+        sort_.build(unsorted_.data(), n, box, 0.5f * field_.reach_m);
         sort_.gather(blob_.data(), unsorted_.data(), n);
         if (kind_ == FieldKind::anisotropic) sort_.gather(stretch_.data(), unsorted_stretch_.data(), n);
     }

@@ -23,13 +23,13 @@ struct FieldRow {
 };
 
 //! [add_blob]
-/// Adds one blob to the eight nodes of a row, the first of them at `d` from the blob. Most blobs near a row
-/// touch none of its nodes: those leave early, before the loop that a compiler can do for all eight at once.
+/// Adds one blob to the eight nodes of a row, the first of them at `d` from the blob: a loop that a compiler
+/// can do for all eight at once.
 template <FieldKind kKind>
 inline __host__ __device__ void add_blob(FieldRow& row, glm::vec3 d, float spacing_m, const Stretch& m,
                                          float per_radius_squared) {
     if constexpr (kKind == FieldKind::anisotropic) {
-        // q^2 = xx x^2 + 2 b x + c along the row; where it is least, b^2 / xx is missing.
+        // q^2 = xx x^2 + 2 b x + c along the row. Where it is least it is c - b^2 / xx.
         const float b = m.xy * d.y + m.xz * d.z;
         const float c = m.yy * d.y * d.y + 2 * m.yz * d.y * d.z + m.zz * d.z * d.z;
         if (c * m.xx - b * b >= m.xx) return;
@@ -41,7 +41,6 @@ inline __host__ __device__ void add_blob(FieldRow& row, glm::vec3 d, float spaci
         }
     } else {
         const float across = (d.y * d.y + d.z * d.z) * per_radius_squared;
-        if (across >= 1) return;
 #pragma omp simd
         for (int i = 0; i < kBrick; ++i) {
             const float x = d.x + float(i) * spacing_m, q2 = x * x * per_radius_squared + across;
@@ -77,7 +76,7 @@ inline __host__ __device__ float field_at(const FieldRow& row, int i, const Fiel
 
 //! [field_kernel]
 /// One block per brick, one thread per row of eight nodes. It walks over the cells that may hold a blob in
-/// reach, eight sums at a time in registers.
+/// reach, eight sums at a time in registers. Most blobs there touch no node of the row: those are left early.
 /// @param blob, stretch  sorted by cell; stretch is for the anisotropic field alone
 template <FieldKind kKind>
 __global__ void field_kernel(float* field, const int4* corner, const float4* blob, const Stretch* stretch,
@@ -96,9 +95,12 @@ __global__ void field_kernel(float* field, const int4* corner, const float4* blo
             const std::uint32_t begin = ranges.cell_first[grid::cell_number(cells, {low.x, cell_y, cell_z})];
             const std::uint32_t end = ranges.cell_last[grid::cell_number(cells, {high.x, cell_y, cell_z})];
             for (std::uint32_t k = begin; k < end; ++k) {
+                const float4 b = blob[k];
+                const glm::vec3 d = start - grid::xyz(b);
+                if (d.y * d.y + d.z * d.z >= b.w * b.w) continue;  // passes the row at a distance
                 Stretch m{};
                 if constexpr (kKind == FieldKind::anisotropic) m = stretch[k];
-                add_blob<kKind>(row, start - grid::xyz(blob[k]), h, m, per_radius_squared);
+                add_blob<kKind>(row, d, h, m, per_radius_squared);
             }
         }
     float* mine = field + blockIdx.x * std::size_t(kBrickNodes) + threadIdx.x * kBrick;

@@ -66,9 +66,7 @@ std::string file_number(int number) {
 class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const sph::Start& start)
-        : program_(program),
-          settings_(settings),
-          camera_(sph::first_view(settings.water.scene.tank).camera()) {
+        : program_(program), settings_(settings), camera_(interop::first_view(tank_of(settings)).camera()) {
         if (settings.drawing == Drawing::none) {  // numbers alone: no OpenGL, and no normals
             numbers_ = std::make_unique<Surface>(settings.surface);
             return;
@@ -88,7 +86,8 @@ class Recorder {
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
             const Measures measures = measure(mesh_.download());
             table_.row({step, time_s, numbers_->brick_count(), mesh_.size().vertices, mesh_.size().triangles,
-                        measures.area_m2, measures.volume_m3, 1e3 * seconds});
+                        measures.area_m2, measures.volume_m3,
+                        1e-6 * double(numbers_->bytes() + mesh_.bytes()), 1e3 * seconds});
             return;
         }
         view_->draw(start.water, camera_);
@@ -121,7 +120,7 @@ class Recorder {
     course::Camera camera_;
     course::Table table_{
         "The surface",
-        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "ms"}};
+        {"step", "time (s)", "bricks", "vertices", "triangles", "area (m^2)", "volume (m^3)", "MB", "ms"}};
     course::Table drawn_{"The surface", {"step", "time (s)", "bricks", "vertices", "triangles"}};
     std::unique_ptr<Surface> numbers_;
     DeviceMesh mesh_{Normals::none};
@@ -182,7 +181,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
         "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
         "P: picture, Esc: end\n");
     sph::Summarizer summarize(start.water.size());
-    course::OrbitCamera orbit = sph::first_view(settings.water.scene.tank);
+    course::OrbitCamera orbit = interop::first_view(tank_of(settings));
     bool paused = false;
     int step = 0;
     for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {

@@ -10,6 +10,11 @@
 
 namespace surface {
 
+inline interop::Box tank_of(const Settings& settings) {
+    const sph::Box& tank = settings.water.scene.tank;
+    return {{tank.low_m.x, tank.low_m.y, tank.low_m.z}, {tank.high_m.x, tank.high_m.y, tank.high_m.z}};
+}
+
 /// Needs a current OpenGL context.
 class SurfaceView {
   public:
@@ -17,7 +22,8 @@ class SurfaceView {
         : surface_(settings.surface), renderer_(width_px, height_px, look(settings)) {}
 
     //! [draw]
-    /// Particles to picture; nothing of it leaves the device but two numbers, the sizes of the mesh.
+    /// Particles to picture. What comes to the host: the box around the particles, and how many regions,
+    /// bricks, crossed rows, vertices and triangles there are.
     void draw(const float4* position, std::uint32_t n, const course::Camera& camera) {
         surface_.build(position, n);
         mesh_.take(surface_);
@@ -32,10 +38,8 @@ class SurfaceView {
 
   private:
     static interop::Look look(const Settings& settings) {
-        const sph::Box& tank = settings.water.scene.tank;
         interop::Look look;
-        look.region = {{tank.low_m.x, tank.low_m.y, tank.low_m.z},
-                       {tank.high_m.x, tank.high_m.y, tank.high_m.z}};
+        look.region = tank_of(settings);
         look.region_edges = true;
         look.floor_tile_m = 0.1f;
         return look;
@@ -53,13 +57,14 @@ class View {
         if (settings.drawing == Drawing::surface)
             surface_ = std::make_unique<SurfaceView>(settings, width, height);
         else
-            particles_ = std::make_unique<sph::WaterView>(settings.water, start, width, height);
+            particles_ = std::make_unique<interop::TankView>(sph::look_of(settings.water, start),
+                                                             start.water.size(), width, height);
     }
     void draw(const sph::Water& water, const course::Camera& camera) {
         if (surface_)
             surface_->draw(water.position(), water.size(), camera);
         else
-            particles_->draw(water, camera);
+            particles_->draw(water.position(), water.velocity(), water.size(), camera);
     }
     const course::Framebuffer& picture() const {
         return surface_ ? surface_->picture() : particles_->picture();
@@ -70,7 +75,7 @@ class View {
 
   private:
     std::unique_ptr<SurfaceView> surface_;
-    std::unique_ptr<sph::WaterView> particles_;
+    std::unique_ptr<interop::TankView> particles_;
 };
 
 }  // namespace surface

@@ -473,7 +473,7 @@ TEST_CASE("a drop is drawn, and an empty scene is drawn without it") {
     const auto context = context_or_skip();
     const Settings settings = run_of(Drawing::surface);
     SurfaceView view(settings, 160, 90);
-    const course::Camera camera = sph::first_view(settings.water.scene.tank).camera();
+    const course::Camera camera = interop::first_view(tank_of(settings)).camera();
     view.draw(nullptr, 0, camera);
     const course::Image empty = view.image();
     const course::DeviceBuffer<float4> particles(block(10, {0.3f, 0.2f, 0.1f}));
@@ -548,7 +548,7 @@ TEST_CASE("points and spheres: no field and no mesh; numbers: no OpenGL") {
         const course::GlCount buffers = course::gl_count(course::GlKind::buffer);
         const cudasim::Recording recording;
         View view(settings, start, 64, 36);
-        view.draw(start.water, sph::first_view(settings.water.scene.tank).camera());
+        view.draw(start.water, interop::first_view(tank_of(settings)).camera());
         for (const char* kernel : kSurfaceKernels) CHECK(recording.count(kernel) == 0);
         CHECK(recording.launches().empty());
         CHECK(recording.allocations() == 0);
@@ -561,7 +561,7 @@ TEST_CASE("points and spheres: no field and no mesh; numbers: no OpenGL") {
         const course::GlCount buffers = course::gl_count(course::GlKind::buffer);
         const cudasim::Recording recording;
         View view(settings, start, 64, 36);
-        view.draw(start.water, sph::first_view(settings.water.scene.tank).camera());
+        view.draw(start.water, interop::first_view(tank_of(settings)).camera());
         CHECK(recording.count("vertices_kernel<true>") == 1);
         // Positions, normals, indices; no sphere's velocity.
         CHECK(course::gl_count(course::GlKind::buffer).made - buffers.made == 3);
@@ -586,7 +586,7 @@ TEST_CASE("points and spheres: no field and no mesh; numbers: no OpenGL") {
 
 TEST_CASE("bad input ends with one clear sentence and exit code 2") {
     const course::TemporaryFolder folder;
-    const std::string out = " --steps 0 --particles 50 --draw none --out " + folder.path().string();
+    const std::string out = " --steps 0 --particles 50 --out " + folder.path().string();
     const auto run = [&](const std::string& arguments) {
         return course::run_program(kProgram, arguments + out);
     };
