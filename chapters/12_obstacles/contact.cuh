@@ -75,10 +75,12 @@ struct Contact {
 //! [first_contact]
 /// @param done     fraction of the step that is over at `from`
 /// @param from, x  ends of the particle's way
+/// @param settled  bit k is set: obstacle k has had its contact
 inline __host__ __device__ Contact first_contact(const Obstacles& all, float done, glm::vec3 from,
-                                                 glm::vec3 x, glm::vec3 v) {
+                                                 glm::vec3 x, glm::vec3 v, unsigned settled = 0) {
     Contact first;
     for (int k = 0; k < all.count; ++k) {
+        if (settled >> k & 1) continue;
         const Moving& o = all.obstacle[k];
         // Seen from the obstacle the particle moves straight, too.
         const glm::vec3 start = from - o.middle_m(done), end = x - o.to_m;
@@ -114,8 +116,9 @@ inline __host__ __device__ void resolve(const Obstacles& all, float moved_s, con
     float done = 1 - moved_s / all.dt_s;
     glm::vec3 from = x - moved_s * v;
     bool touched = false;
+    unsigned settled = 0;
     for (int k = 0; k < kMaxBounces; ++k) {
-        const Contact contact = first_contact(all, done, from, x, v);
+        const Contact contact = first_contact(all, done, from, x, v, settled);
         if (contact.obstacle < 0) break;
         const Moving& o = all.obstacle[contact.obstacle];
         done += contact.fraction * (1 - done);
@@ -123,7 +126,11 @@ inline __host__ __device__ void resolve(const Obstacles& all, float moved_s, con
         v = bounce(v, o.velocity_m_per_s(done), contact.normal, o.surface, share[contact.obstacle]);
         on_bounce(contact.obstacle, before, v);
         from = o.middle_m(done) + contact.place;
-        x = from + (1 - done) * all.dt_s * v;
+        // A light obstacle gives way, but only at the end of the step. Until then the particle does not get
+        // ahead of it, and does not hit it again.
+        if (share[contact.obstacle] < 1) settled |= 1u << contact.obstacle;
+        const float approach = -glm::dot(v - o.velocity_m_per_s(done), contact.normal);
+        x = from + (1 - done) * all.dt_s * (v + fmaxf(0.0f, approach) * contact.normal);
         touched = true;
     }
     if (!touched) return;
@@ -158,18 +165,18 @@ struct Impulse {
     double x, y, z;  ///< kg m/s
 };
 
-//! [contact_kernel]
-/// One thread per particle. Nobody looks at another particle.
-/// @tparam kTwoWay  obstacles feel it: then `impulse` gets n elements for each obstacle
-/// @param hits      for each obstacle, how many particles hit it in this step
-/// @param weight    mass of a particle / mass of the obstacle; 0 for one that does not feel it
+/// What the pass needs of obstacles that feel the particles.
 struct TwoWay {
-    Impulse* impulse;
-    const std::uint32_t* hits[kMaxObstacles];
-    float weight[kMaxObstacles];
-    double mass_kg;  ///< of a particle
+    Impulse* impulse;                          ///< n elements for each obstacle
+    const std::uint32_t* hits[kMaxObstacles];  ///< how many particles hit it in this step
+    float weight[kMaxObstacles];  ///< mass of a particle / mass of the obstacle; 0: too heavy to feel it
+    double mass_kg;               ///< of a particle
 };
 
+//! [contact_kernel]
+/// One thread per particle. Nobody looks at another particle.
+/// @tparam Clock    how long each has moved
+/// @tparam kTwoWay  obstacles feel it
 template <class Clock, bool kTwoWay>
 __global__ void contact_kernel(float4* position, float4* velocity, Obstacles all, Clock clock, TwoWay two_way,
                                std::uint32_t n) {

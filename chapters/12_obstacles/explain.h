@@ -43,23 +43,21 @@ inline std::string in_words(const Launches& kernels) {
         names += (names.empty() ? "" : ", ") + name + (count > 1 ? " x " + std::to_string(count) : "");
         total += count;
     }
-    return std::to_string(total) + " kernels" + (total > 0 ? ": " + names : "") + "\n";
+    return std::to_string(total) + (total == 1 ? " kernel" : " kernels") + (total > 0 ? ": " + names : "") +
+           "\n";
 }
 
 /// @param model  launches of one step without obstacles
 inline std::string explain(const std::string& scene, const Launches& model, const Launches& added,
                            const ObstacleSet& obstacles, bool water, bool draws) {
-    std::string text = scene + ": " + std::to_string(obstacles.size()) + " obstacles\n";
+    std::string text = scene + ": " + std::to_string(obstacles.size()) +
+                       (obstacles.size() == 1 ? " obstacle\n" : " obstacles\n");
     text += "each step of the particles: " + in_words(model);
     text += "each step of the obstacles: " + in_words(added);
     text += "each particle: " + std::to_string(obstacles.bytes_per_particle()) +
             " bytes more of device memory for what it gives to obstacles\n";
     if (!obstacles.two_way())
         text += "left out: impulses and their sums (nothing here moves as particles push it)\n";
-    bool friction = false;
-    for (int k = 0; k < obstacles.size(); ++k)
-        friction = friction || obstacles.obstacle(k).surface.friction > 0;
-    if (!friction) text += "left out: friction (a test of one number per contact, not of each particle)\n";
     if (!water) text += "left out: ghost water (these particles have no density)\n";
     text += "left out: a grid of distances (spheres and boxes have a formula), rotation\n";
     if (!draws) text += "left out: OpenGL, its context and all its objects, since nothing is drawn\n";

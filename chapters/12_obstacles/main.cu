@@ -150,18 +150,6 @@ void run_headless(course::Program& program, const Choices& choices, Run& run) {
     program.result().table(table);
 }
 
-//! [hand]
-/// Where the mouse takes an obstacle: in the plane through it that faces the eye, it stays under the pointer.
-glm::dvec3 dragged(glm::dvec3 from_m, const course::WindowEvents& events, const course::Camera& camera,
-                   int height_px) {
-    const glm::mat4 view = camera.view();
-    const glm::dvec3 right(view[0][0], view[1][0], view[2][0]), up(view[0][1], view[1][1], view[2][1]);
-    const double depth_m = -(view * glm::vec4(glm::vec3(from_m), 1)).z;
-    const double pixel_m = 2 * depth_m * std::tan(camera.field_of_view_rad / 2) / height_px;
-    return from_m + pixel_m * (events.drag_x_px * right - events.drag_y_px * up);
-}
-//! [hand]
-
 /// Camera by the right button; the left one moves obstacle 0.
 void steer_camera(course::OrbitCamera& orbit, const course::WindowEvents& events, int height_px) {
     course::WindowEvents camera_events = events;

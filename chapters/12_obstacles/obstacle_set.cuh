@@ -66,9 +66,12 @@ inline void check(const Obstacle& obstacle, const Setting& setting) {
     const double fastest = path.fastest_m_per_s();
     want(std::isfinite(fastest) && std::isfinite(glm::length(path.start_m)),
          "an obstacle's path must be finite, not %g", fastest);
-    for (const Leg& leg : path.legs)
+    for (const Leg& leg : path.legs) {
         want(leg.duration_s >= 0 && std::isfinite(leg.duration_s),
              "a leg of a path must last 0 s or more, not %g s", leg.duration_s);
+        const double a = glm::length(leg.acceleration_m_per_s2);
+        want(std::isfinite(a), "an obstacle's acceleration must be finite, not %g m/s^2", a);
+    }
     if (path.repeats) {
         const double jump = glm::length(path.after_legs().velocity_m_per_s - path.start_velocity_m_per_s);
         want(jump <= 1e-9 * (1 + fastest),
@@ -114,6 +117,7 @@ class ObstacleSet {
             now_.obstacle[k].surface = o.surface;
             now_.obstacle[k].from_m = now_.obstacle[k].to_m = motion_[k].position_m;
         }
+        received_.assign(obstacles.size(), glm::dvec3(0));
         pass_.mass_kg = setting.particle_mass_kg;
         if (!two_way_) return;  // nobody feels anything: nothing is kept or added up
         impulse_ = course::DeviceBuffer<Impulse>(std::size_t(setting.particles) * now_.count);
@@ -202,7 +206,6 @@ class ObstacleSet {
     /// Free obstacles get what the particles have lost: to the last bit of a double. Waits for the device.
     void finish(std::uint32_t n) {
         if (!two_way_) return;
-        received_.assign(now_.count, glm::dvec3(0));
         for (int k = 0; k < now_.count; ++k) {
             add_impulses_[0](static_cast<const Impulse*>(pass_.impulse + std::size_t(k) * n), n);
             const Impulse sum = add_impulses_[0].download();

@@ -3,18 +3,31 @@
 #pragma once
 #include "06_gl_interop/tank_view.cuh"
 #include "12_obstacles/obstacle_set.cuh"
+#include "common/gl_window.h"
 
 namespace obstacles {
 
 /// From higher up than a tank without obstacles: what the water does behind them is to be seen.
 inline course::OrbitCamera obstacle_view(const interop::Box& tank) {
     course::OrbitCamera orbit = interop::first_view(tank);
-    orbit.target_m.y = tank.low_m.y + 0.3f * (tank.high_m.y - tank.low_m.y);
-    orbit.distance_m = 2.1f * tank.half_diagonal_m();
+    orbit.target_m.y = tank.low_m.y + 0.26f * (tank.high_m.y - tank.low_m.y);
+    orbit.distance_m = 2.35f * tank.half_diagonal_m();
     orbit.yaw_rad = 0.72f;
     orbit.pitch_rad = 0.46f;
     return orbit;
 }
+
+//! [hand]
+/// Where the mouse takes an obstacle: in the plane through it that faces the eye, it stays under the pointer.
+inline glm::dvec3 dragged(glm::dvec3 from_m, const course::WindowEvents& events, const course::Camera& camera,
+                          int height_px) {
+    const glm::mat4 view = camera.view();
+    const glm::dvec3 right(view[0][0], view[1][0], view[2][0]), up(view[0][1], view[1][1], view[2][1]);
+    const double depth_m = -(view * glm::vec4(glm::vec3(from_m), 1)).z;
+    const double pixel_m = 2 * depth_m * std::tan(camera.field_of_view_rad / 2) / height_px;
+    return from_m + pixel_m * (events.drag_x_px * right - events.drag_y_px * up);
+}
+//! [hand]
 
 /// Draws particles in a tank with obstacles. Needs a current OpenGL context.
 class ObstacleView {

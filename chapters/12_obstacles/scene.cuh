@@ -76,14 +76,27 @@ struct WaterSettings {
     double fastest_per_sound = kFastestPerSound;
 };
 
-/// The same path, run through `factor` times as fast.
+/// The same path, run through `factor` times as fast. @throws course::BadInput if that is no factor
 inline Path faster(Path path, double factor) {
+    if (!(factor > 0 && factor <= 1e6))
+        throw course::BadInput("the speed must be a factor above 0, and at most 1000000");
     path.start_velocity_m_per_s *= factor;
     for (Leg& leg : path.legs) {
         leg.duration_s /= factor;
         leg.acceleration_m_per_s2 *= factor * factor;
     }
     return path;
+}
+
+/// @throws course::BadInput if a particle starts nearer to an obstacle than the gap
+inline void require_room(const std::vector<float4>& position, const ObstacleSet& obstacles, float spacing_m) {
+    for (const float4& x : position)
+        for (int k = 0; k < obstacles.size(); ++k) {
+            const Moving& o = obstacles.now().obstacle[k];
+            if (signed_distance(o.solid, grid::xyz(x) - o.to_m) >= -1e-4f * spacing_m) continue;
+            throw course::BadInput("obstacle " + std::to_string(k) +
+                                   " takes room where particles start: make it smaller, or put it elsewhere");
+        }
 }
 
 /// Water and its obstacles, moved together.
@@ -94,15 +107,7 @@ class WaterRun {
         : settings_(settings),
           start_(sph::make_start(water_settings(settings))),
           obstacles_(make_obstacles(settings, start_)) {
-        const auto position = start_.water.positions().download();
-        for (const float4& x : position)
-            for (int k = 0; k < obstacles_.size(); ++k) {
-                const Moving& o = obstacles_.now().obstacle[k];
-                if (signed_distance(o.solid, grid::xyz(x) - o.to_m) >= -1e-4f * start_.spacing_m) continue;
-                throw course::BadInput(
-                    "obstacle " + std::to_string(k) +
-                    " takes room where water starts: make it smaller, or put it elsewhere");
-            }
+        require_room(start_.water.positions().download(), obstacles_, start_.spacing_m);
     }
 
     void step() { obstacles::step(start_.water, obstacles_, settings_.skin); }
@@ -143,8 +148,6 @@ class WaterRun {
         return water;
     }
     static ObstacleSet make_obstacles(const WaterSettings& settings, const sph::Start& start) {
-        if (!(settings.speed > 0 && settings.speed <= 1e6))
-            throw course::BadInput("the speed must be a factor above 0, and at most 1000000");
         const sph::Fluid& fluid = start.water.fluid();
         Setting setting;
         setting.particles = start.water.size();
