@@ -81,15 +81,17 @@ inline __host__ __device__ glm::vec<3, T> wall_force(const MaterialOf<T>& materi
                                                      glm::vec<3, T> high, glm::vec<3, T> x,
                                                      glm::vec<3, T> velocity) {
     const T radius = material.diameter_m / 2;
+    const glm::vec<3, T> over_low = radius - (x - low), over_high = radius - (high - x);
     glm::vec<3, T> force(0);
+    const glm::vec<3, T> deepest = glm::max(over_low, over_high);
+    if (!(deepest.x > 0 || deepest.y > 0 || deepest.z > 0)) return force;  // as for most marbles
     for (int axis = 0; axis < 3; ++axis) {
         glm::vec<3, T> normal(0);
-        const T over_low = radius - (x[axis] - low[axis]), over_high = radius - (high[axis] - x[axis]);
         normal[axis] = 1;
-        if (over_low > 0)
-            force += contact_force<kShear>(material, normal, over_low, velocity, material.mass_kg);
-        if (over_high > 0)
-            force += contact_force<kShear>(material, -normal, over_high, velocity, material.mass_kg);
+        if (over_low[axis] > 0)
+            force += contact_force<kShear>(material, normal, over_low[axis], velocity, material.mass_kg);
+        if (over_high[axis] > 0)
+            force += contact_force<kShear>(material, -normal, over_high[axis], velocity, material.mass_kg);
     }
     return force;
 }

@@ -2,6 +2,7 @@
 /// The largest stable time step of springs with dashpots, and the damping that a bounce asks for.
 #pragma once
 #include <cmath>
+#include <vector>
 
 #include "09_water_spring_mass/contact.cuh"
 
@@ -29,32 +30,43 @@ inline double oscillator_limit_s(double omega_per_s, double damping_per_s) {
                   : 2 / damping_per_s;
 }
 
-/// How marbles are packed decides how hard they hold each other: the highest frequency, squared, in units of
-/// k / m, from the contacts' directions.
+/// How marbles are packed decides how hard they hold each other.
 enum class Packing { pair, chain, cubic, fcc };
 
-inline double omega_squared_m_per_k(Packing packing) {
+/// Frequency squared, in k / m, of a wave in the packing whose every contact is pressed along its normal
+/// (`springs`), and how much its tangential dashpots add (`sliding`, the same sum across the contacts).
+struct StiffestWave {
+    double springs, sliding;
+};
+
+/// The waves that can break the step: D = sum over contacts of (1 - cos q.d) n n^T, at its largest. In fcc,
+/// where twelve neighbours touch and nothing packs more densely, two: the first shakes the springs most, the
+/// second the tangential dashpots.
+inline std::vector<StiffestWave> stiffest_waves(Packing packing) {
     switch (packing) {
         case Packing::pair:
-            return 2;         // the two against each other: k / m_eff
-        case Packing::chain:  // neighbours in opposite motion
+            return {{2, 0}, {0, 2}};  // along their line, and across it
+        case Packing::chain:
+            return {{4, 0}, {0, 4}};  // neighbours in opposite motion
         case Packing::cubic:
-            return 4;
+            return {{4, 8}, {0, 12}};  // all neighbours in opposite motion
         case Packing::fcc:
-            return 8;  // twelve neighbours; nothing packs more densely
+            break;
     }
-    return 8;
+    return {{8, 8}, {4, 12}};
 }
 
-/// Largest stable step for marbles packed that way. Dashpots between marbles add up as springs do: normal
-/// ones are in line with the springs, tangential ones across (in the densest packing at most 6 gamma_t).
+/// Largest stable step for marbles packed that way. Dashpots add up over contacts as springs do.
 inline double time_step_limit_s(const MaterialOf<double>& material, Packing packing = Packing::fcc) {
-    const double contacts = omega_squared_m_per_k(packing);
-    const double omega =
-        std::sqrt(contacts * (material.stiffness_N_per_m + material.attraction_N_per_m) / material.mass_kg);
-    const double damping = 0.5 * contacts * material.normal_damping_per_s +
-                           (packing == Packing::fcc ? 6 : 0) * material.tangential_damping_per_s;
-    return oscillator_limit_s(omega, damping);
+    const double stiffness = material.stiffness_N_per_m + material.attraction_N_per_m;
+    double limit_s = INFINITY;
+    for (const StiffestWave& wave : stiffest_waves(packing)) {
+        const double omega = std::sqrt(wave.springs * stiffness / material.mass_kg);
+        const double damping = 0.5 * (wave.springs * material.normal_damping_per_s +
+                                      wave.sliding * material.tangential_damping_per_s);
+        limit_s = std::fmin(limit_s, oscillator_limit_s(omega, damping));
+    }
+    return limit_s;
 }
 //! [limit]
 

@@ -70,13 +70,14 @@ class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const Start& start)
         : program_(program),
-          camera_(first_view(settings.scene.tank).camera()),
+          camera_(interop::first_view(look_of(settings, start).tank).camera()),
           table_("The marbles' state",
                  {"step", "time (s)", "front (m)", "kinetic energy (J)", "total energy (J)",
                   "contacts per marble", "deepest overlap (%)", "fastest (m/s)"}) {
         if (settings.drawing == Drawing::none) return;  // numbers alone: no OpenGL
         context_ = course::make_headless_context();
-        view_ = std::make_unique<MarblesView>(settings, start, program.options.width, program.options.height);
+        view_ = std::make_unique<interop::TankView>(look_of(settings, start), start.marbles.size(),
+                                                    program.options.width, program.options.height);
         program.result().note("OpenGL " + context_->info().version + ", " + context_->info().renderer +
                               "; handover: " + view_->handover());
     }
@@ -86,7 +87,7 @@ class Recorder {
                     now.contacts / start.marbles.size(),
                     100.0 * now.deepest_m / start.marbles.material().diameter_m, now.highest_speed});
         if (!view_) return;
-        view_->draw(start.marbles, camera_);
+        view_->draw(start.marbles.position(), start.marbles.velocity(), start.marbles.size(), camera_);
         stills_.push_back(view_->image());
         const std::string file = "still_" + file_number(step) + ".png";
         course::save_png(program_.options.out / file, stills_.back());
@@ -110,7 +111,7 @@ class Recorder {
     course::Camera camera_;
     course::Table table_;
     std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
-    std::unique_ptr<MarblesView> view_;
+    std::unique_ptr<interop::TankView> view_;
     std::vector<course::Image> stills_;
     std::vector<std::pair<std::string, std::string>> captions_;
 };
@@ -160,14 +161,15 @@ void run_headless(course::Program& program, const Settings& settings, Start& sta
 void run_window(course::Program& program, const Choices& choices, const Settings& settings, Start& start) {
     const course::ProgramOptions& options = program.options;
     const auto window = course::make_window(options.width, options.height, "Marbles: " + settings.scene.name);
-    MarblesView view(settings, start, options.width, options.height);
+    const interop::TankScene look = look_of(settings, start);
+    interop::TankView view(look, start.marbles.size(), options.width, options.height);
     std::printf("%s; handover: %s\n", window->info().renderer.c_str(), view.handover().c_str());
     std::printf(
         "drag: orbit, right drag: move, wheel: zoom, space: pause, S or right: step, R: reset, "
         "P: picture, Esc: end\n");
     Summarizer summarize(start.marbles.size());
     const double start_J = summarize(start.marbles).energy_J();
-    course::OrbitCamera orbit = first_view(settings.scene.tank);
+    course::OrbitCamera orbit = interop::first_view(look.tank);
     bool paused = false;
     int step = 0;
     for (int frame = 0; !window->closed() && (choices.frames == 0 || frame < choices.frames); ++frame) {
@@ -184,7 +186,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
             if (++step % kStepsPerCheck == 0)
                 check_state(start.marbles, summarize(start.marbles), start_J, step, start.dt_s);
         }
-        view.draw(start.marbles, orbit.camera());
+        view.draw(start.marbles.position(), start.marbles.velocity(), start.marbles.size(), orbit.camera());
         if (events.screenshot) {
             const std::string file = "screenshot_" + file_number(step) + ".png";
             course::save_png(options.out / file, view.image());

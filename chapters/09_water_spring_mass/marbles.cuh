@@ -58,11 +58,13 @@ __global__ void contact_kernel(ContactPass pass, float dt_s) {
     const glm::vec3 x = grid::xyz(pass.position[i]), v = grid::xyz(pass.half_velocity[i]);
     const float touching = material.diameter_m * material.diameter_m;
     glm::vec3 force = wall_force<kShear>(material, as_vec3(pass.box.low_m), as_vec3(pass.box.high_m), x, v);
-    pass.list.for_each(i, [&](std::uint32_t j) {
+    const auto touches = [&](std::uint32_t j) {
         const glm::vec3 apart = x - grid::xyz(pass.position[j]);
-        if (glm::dot(apart, apart) < touching)
-            force +=
-                pair_force<kShear, kAttraction>(material, apart, v - grid::xyz(pass.half_velocity[j]), i < j);
+        return glm::dot(apart, apart) < touching;
+    };
+    pass.list.for_each_near(i, touches, [&](std::uint32_t j) {
+        force += pair_force<kShear, kAttraction>(material, x - grid::xyz(pass.position[j]),
+                                                 v - grid::xyz(pass.half_velocity[j]), i < j);
     });
     const glm::vec3 a = force / material.mass_kg + material.gravity_m_per_s2;
     glm::vec3 v_new = v + 0.5f * dt_s * a;
@@ -74,7 +76,7 @@ __global__ void contact_kernel(ContactPass pass, float dt_s) {
 }
 //! [contact_kernel]
 
-constexpr float kDefaultSkin = 0.2f;  ///< in diameters; study `skin`
+constexpr float kDefaultSkin = 0.4f;  ///< in diameters; study `skin`
 
 /// State of n marbles on the device. Move-only.
 class Marbles {
@@ -97,7 +99,7 @@ class Marbles {
           acceleration_(n_),
           id_(n_),
           sorted_id_(n_),
-          neighbour_(NeighbourList::words_for(n_)),
+          neighbour_(NeighbourList::place(n_)),
           neighbour_count_(n_),
           outdated_(1) {
         std::vector<std::uint32_t> ids(n_);
@@ -143,7 +145,7 @@ class Marbles {
     bool has_attraction() const { return material_.attraction_N_per_m > 0; }
     bool has_drag() const { return material_.drag_per_s > 0; }
 
-    /// Bytes of device memory per marble, the grid's cells and the last group of lists not counted.
+    /// Bytes of device memory per marble, the grid's cells not counted.
     static constexpr std::size_t kBytesPerMarble = 5 * sizeof(float4) + 2 * sizeof(std::uint32_t) +  // state
                                                    2 * sizeof(std::uint32_t) +  // cell and order
                                                    (1 + NeighbourList::kCapacity) * sizeof(std::uint32_t);

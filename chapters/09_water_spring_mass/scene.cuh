@@ -110,8 +110,9 @@ inline Material make_material(const Scene& scene, float spacing_m) {
     material.normal_damping_per_s =
         damping_for_restitution(touch.restitution, material.stiffness_N_per_m, material.mass_kg);
     material.friction = touch.friction;
-    // Sliding is braked as hard as approach; from there on friction decides.
-    if (touch.friction > 0) material.tangential_damping_per_s = material.normal_damping_per_s;
+    // Half of it for sliding, as LAMMPS does when nothing else is said. All but the slowest sliding is up to
+    // friction.
+    if (touch.friction > 0) material.tangential_damping_per_s = 0.5f * material.normal_damping_per_s;
     material.attraction_N_per_m = touch.attraction * material.stiffness_N_per_m;
     material.drag_per_s = touch.drag_per_s;
     return material;
