@@ -65,7 +65,7 @@ inline std::vector<WaterScene> all_scenes() {
     // A ball of water, as it falls into a pool.
     WaterScene drop{"drop", {origin, {0.6f, 0.5f, 0.6f}, {}}, {{origin, {0.6f, 0.1f, 0.6f}}}, {}, {}};
     drop.bodies.push_back({{0.2f, 0.2f, 0.2f}, {0.2f, 0.2f, 0.2f}, true, 1.5f});
-    drop.view = view({0.3f, 0.13f, 0.3f}, 1.45f, 0.45f, 0.26f);
+    drop.view = view({0.3f, 0.1f, 0.3f}, 1.35f, 0.45f, 0.26f);
     // A pump throws water up from the floor of a pool.
     WaterScene fountain{
         "fountain_into_pool", {origin, {0.6f, 0.6f, 0.6f}, {}}, {{origin, {0.6f, 0.16f, 0.6f}}}, {}, {}};
