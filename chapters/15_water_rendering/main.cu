@@ -22,7 +22,7 @@ constexpr int kStepsPerCheck = 10;  // an explosion doubles its speed in a few s
 /// What this program can be asked for, beyond the options that all programs have.
 struct Choices {
     std::string draw = "surface", inside = "marched", model = "sph", record;
-    int samples = 4, every = 10, frames = 0;
+    int samples = 0, every = 10, frames = 0;
     float nodes = 2, exposure = 0.85f;
     bool schlick = false, no_caustics = false, no_lapse = false, compare = false;
 };
@@ -43,7 +43,8 @@ Look make_look(const Choices& choices) {
     const auto want = [](bool good, const char* sentence) {
         if (!good) throw course::BadInput(sentence);
     };
-    want(choices.samples >= 1 && choices.samples <= 1024, "--samples must be from 1 to 1024");
+    want(choices.samples >= 0 && choices.samples <= 1024,
+         "--samples must be from 0 (4, or 1 in a window) to 1024");
     want(choices.nodes >= 0.25f && choices.nodes <= 8, "--nodes must be from 0.25 to 8");
     want(choices.exposure >= 0.01f && choices.exposure <= 100, "--exposure must be from 0.01 to 100");
     want(choices.every >= 1, "--every must be 1 or more");
@@ -61,7 +62,7 @@ Look make_look(const Choices& choices) {
         {{"marched", Inside::marched}, {"thickness", Inside::thickness}, {"straight", Inside::straight}});
     look.schlick = choices.schlick;
     look.caustics = !choices.no_caustics;
-    look.samples = choices.samples;
+    if (choices.samples > 0) look.samples = choices.samples;
     look.nodes_per_spacing = choices.nodes;
     look.exposure = choices.exposure;
     return checked(look);
@@ -218,6 +219,7 @@ void run_window(course::Program& program, const Choices& choices, const WaterSce
     course::Gui gui(*window);
     Wishes wishes;
     wishes.look = make_look(choices);
+    if (choices.samples == 0) wishes.look.samples = 1;
     wishes.ball_m = scene.stage.ball.middle_m;
     std::optional<WaterView> view;
     WaterScene seen = scene;  // its camera moves
@@ -275,7 +277,7 @@ int main(int argc, char** argv) {
                    "surface, screen (screen space), spheres, points, or none (no OpenGL)");
     program.option("--inside", choices.inside, "light in the water: marched, thickness or straight");
     program.option("--model", choices.model, "sph (chapter 10) or marbles (chapter 09)");
-    program.option("--samples", choices.samples, "rays of a pixel");
+    program.option("--samples", choices.samples, "rays of a pixel (0: 4, in a window 1)");
     program.option("--nodes", choices.nodes, "nodes of the field for each spacing of the particles");
     program.option("--exposure", choices.exposure, "of the film");
     program.option("--record", choices.record, "film of the run: FILE.mp4 or FILE.gif");

@@ -35,7 +35,9 @@ inline void follow_keys(Wishes& wishes, const course::WindowEvents& events) {
 //! [panel]
 /// Declares the panel of this frame, between Gui::begin() and Gui::end().
 inline void draw_panel(Wishes& wishes, const Stage& stage, const PassClock& clock, double step_ms) {
-    ImGui::Begin("Water");
+    ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
+    ImGui::Begin("Water", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushItemWidth(130);
     int drawing = int(wishes.look.drawing), inside = int(wishes.look.inside);
     ImGui::Combo("drawn as", &drawing, "points\0spheres\0screen space\0surface\0");
     wishes.look.drawing = Drawing(drawing);
@@ -55,6 +57,7 @@ inline void draw_panel(Wishes& wishes, const Stage& stage, const PassClock& cloc
     for (const auto& [pass, milliseconds] : clock.passes())
         ImGui::Text("%s %.1f ms", pass.c_str(), milliseconds);
     ImGui::Text("picture %.1f ms", clock.total_ms());
+    ImGui::PopItemWidth();
     ImGui::End();
 }
 //! [panel]

@@ -110,7 +110,7 @@ TEST_CASE("input: what can't be done is said in one sentence") {
     refused("--inside out", "--inside must be one of marched");
     refused("--model ink", "--model must be one of sph, marbles");
     refused("--scene fountain_into_pool --model marbles", "knows neither pump nor ball");
-    refused("--samples 0", "--samples must be from 1");
+    refused("--samples -1", "--samples must be from 0");
     refused("--nodes nan", "--nodes");
     refused("--nodes 8 --particles 2000000000", "GiB of memory");
     refused("--record film.avi --particles 100", "--record writes .mp4 or .gif");
