@@ -72,6 +72,7 @@ class GlfwWindow : public Window {
     }
 
     void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
+    void* glfw_window() override { return window_; }
 
   private:
     static GlfwWindow& self(GLFWwindow* window) {
@@ -85,6 +86,7 @@ class GlfwWindow : public Window {
         if ((key == GLFW_KEY_S || key == GLFW_KEY_RIGHT) && action != GLFW_RELEASE) events.step = true;
         if (key == GLFW_KEY_R && pressed) events.reset = true;
         if (key == GLFW_KEY_P && pressed) events.screenshot = true;
+        if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9 && pressed) events.digit = key - GLFW_KEY_0;
     }
     static void on_move(GLFWwindow* window, double x, double y) {
         GlfwWindow& w = self(window);

@@ -20,6 +20,7 @@ struct WindowEvents {
     bool step = false;                    ///< S or right arrow
     bool reset = false;                   ///< R
     bool screenshot = false;              ///< P
+    int digit = 0;                        ///< 1 to 9: that key; 0: none of them
 };
 
 /// A window of fixed size.
@@ -33,6 +34,7 @@ class Window : public GlContext {
     /// What copy() left in the window, as an image; call it before swap().
     virtual Image read() const = 0;
     virtual void set_title(const std::string& title) = 0;
+    virtual void* glfw_window() = 0;  ///< for what draws over the picture (gl_gui.h)
     void show(const Framebuffer& picture) {
         copy(picture);
         swap();
