@@ -210,7 +210,8 @@ void run_window(course::Program& program, const Choices& choices, const Make& ma
 void run_water(course::Program& program, const Choices& choices) {
     const course::ProgramOptions& options = program.options;
     const WaterSettings settings = water_settings(options, choices);
-    course::require_memory(double(settings.particles) * (2 * sizeof(float4) + sph::Water::bytes_per_particle(true)));
+    course::require_memory(double(settings.particles) *
+                           (2 * sizeof(float4) + sph::Water::bytes_per_particle(true)));
     const auto make = [&] { return WaterRun(settings); };
     if (options.explain) {
         const WaterRun run = make();
