@@ -47,7 +47,7 @@ inline double pane_reflection(double cosine) {
     return 2 * once / (1 + once);
 }
 
-/// Steeper than this against the normal, light does not get out of water: 48.6 degrees.
+/// Farther than this from the normal, light does not get out of water: 48.6 degrees.
 inline double critical_angle_rad() {
     return std::asin(1 / kWaterIndex);
 }
