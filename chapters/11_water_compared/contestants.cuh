@@ -106,7 +106,7 @@ class ContestantOf : public Contestant {
 };
 
 //! [make_contestant]
-/// Both models get the same positions, at rest. A marble is as large as the spacing; a smoothing kernel
+/// Both models get the same positions, at rest. A marble is 0.95 spacings wide; a smoothing kernel
 /// reaches two spacings. Each takes the time step that its own chapter's program would, times dt_factor.
 inline std::unique_ptr<Contestant> make_contestant(const RunPlan& plan, const Drop& drop) {
     float spacing_m = 0;

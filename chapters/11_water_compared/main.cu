@@ -37,6 +37,7 @@ Experiment make_experiment(const course::ProgramOptions& options, const Choices&
          "sizes go from 2^6 to 2^24, and --min-exponent is at most --max-exponent");
     want(choices.runs >= 1 && choices.runs <= 1000, "--runs must be from 1 to 1000");
     want(options.steps >= 2, "--steps must be at least 2");
+    want(options.dt_s == 0, "each model has its own time step: use --dt-factor");
     want(choices.samples >= 1, "--samples must be at least 1");
     want(choices.stiffness >= 1e-4f && choices.stiffness <= 1e6f,
          "--stiffness must be from 0.0001 to 1000000");

@@ -62,7 +62,7 @@ struct RunRecord {
 };
 
 //! [files]
-/// "sph_2e14_run00.json"; another stiffness or time step is another file.
+/// "sph_2e14_k1_dt1_run00.json"; another stiffness or time step is another file.
 inline std::filesystem::path file_of(const std::filesystem::path& folder, const RunPlan& plan) {
     char name[128];
     std::snprintf(name, sizeof name, "%s_2e%d_k%g_dt%g_run%02d.json",

@@ -1,7 +1,8 @@
 // Exercise 12.1: a third shape.
 //
-// A capsule is everything within a radius of a line segment: a stick with round ends. Once its signed
-// distance and its way out are known, everything else in the chapter would work with it, too.
+// A capsule is everything within a radius of a line segment: a stick with round ends. Its signed
+// distance and its way out are all that the test at the end of the step needs; the swept test would need its
+// crossing as well.
 #pragma once
 #include <cuda_runtime.h>
 

@@ -315,8 +315,8 @@ TEST_CASE("bad input is a sentence and exit code 2; a step that is too long is e
     const course::TemporaryFolder folder;
     const std::string out = " --draw none --out '" + folder.path().string() + "'";
     for (const char* wrong : {"--min-exponent 15 --max-exponent 14", "--max-exponent 25", "--min-exponent 5",
-                              "--runs -1", "--steps 1", "--samples 0", "--stiffness 0", "--stiffness nan",
-                              "--dt-factor -1", "--draw cubes", "--scene nosuch"}) {
+                              "--runs -1", "--steps 1", "--dt 0.001", "--samples 0", "--stiffness 0",
+                              "--stiffness nan", "--dt-factor -1", "--draw cubes", "--scene nosuch"}) {
         CAPTURE(wrong);
         const course::ProgramRun result = run(wrong + out);
         CHECK(result.exit_code == 2);
