@@ -61,6 +61,12 @@ inline std::string explain(const Experiment& experiment, bool draws) {
 }
 //! [explain]
 
+/// For the sum of all heights. (Not inside the class: nvcc takes no private type for a kernel.)
+struct Heights {
+    const float4* position;
+    __device__ double operator[](std::uint32_t i) const { return position[i].y; }
+};
+
 /// Looks at a contestant's particles: how crowded they are, and how high.
 class Observer {
   public:
@@ -86,11 +92,6 @@ class Observer {
     }
 
   private:
-    struct Heights {
-        const float4* position;
-        __device__ double operator[](std::uint32_t i) const { return position[i].y; }
-    };
-
     float floor_m_;
     CrowdCounter neighbours_, partners_;
     patterns::TreeReduction<patterns::Sum<double>> height_;
