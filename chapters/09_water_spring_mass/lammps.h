@@ -45,11 +45,19 @@ inline std::string lammps_script(const LammpsScene& scene) {
     const MaterialOf<double>& m = scene.material;
     const double g = glm::length(m.gravity_m_per_s2);
     const glm::dvec3 down = g > 0 ? m.gravity_m_per_s2 / g : glm::dvec3(0, -1, 0);
+    // Processes share the box by cuts across the floor: above a bed there is nothing to share.
+    int up = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (std::abs(down[axis]) > std::abs(down[up])) up = axis;
     std::ostringstream hooke, script;
     hooke << std::setprecision(17) << m.stiffness_N_per_m << " NULL " << m.normal_damping_per_s << " "
           << m.tangential_damping_per_s << " " << m.friction << " 1";
     script << std::setprecision(17) << "units lj\natom_style sphere\nboundary f f f\nnewton on\n"
-           << "comm_modify vel yes\nread_data scene.data\nset group all mass " << m.mass_kg << "\n"
+           << "comm_modify vel yes\nprocessors "
+           << (up == 0   ? "1 * *"
+               : up == 1 ? "* 1 *"
+                         : "* * 1")
+           << "\nread_data scene.data\nset group all mass " << m.mass_kg << "\n"
            << "pair_style gran/hooke " << hooke.str() << "\npair_coeff * *\nneighbor " << scene.skin_m
            << " bin\nneigh_modify delay 0 every 1 check yes\nfix move all nve\n";
     for (int axis = 0; axis < 3; ++axis)
