@@ -9,6 +9,7 @@
 #include "common/gl_window.h"
 #include "common/gpu_timer.h"
 #include "common/program.h"
+#include "common/stills.h"
 
 namespace {
 
@@ -59,12 +60,6 @@ Settings make_settings(const course::ProgramOptions& options, const Choices& cho
     return settings;
 }
 
-std::string file_number(int number) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%06d", number);
-    return text;
-}
-
 /// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
 class Recorder {
   public:
@@ -73,7 +68,8 @@ class Recorder {
           camera_(interop::first_view(look_of(settings, start).tank).camera()),
           table_("The marbles' state",
                  {"step", "time (s)", "front (m)", "kinetic energy (J)", "total energy (J)",
-                  "contacts per marble", "deepest overlap (%)", "fastest (m/s)"}) {
+                  "contacts per marble", "deepest overlap (%)", "fastest (m/s)"}),
+          stills_(program) {
         if (settings.drawing == Drawing::none) return;  // numbers alone: no OpenGL
         context_ = course::make_headless_context();
         view_ = std::make_unique<interop::TankView>(look_of(settings, start), start.marbles.size(),
@@ -88,21 +84,12 @@ class Recorder {
                     100.0 * now.deepest_m / start.marbles.material().diameter_m, now.highest_speed});
         if (!view_) return;
         view_->draw(start.marbles.position(), start.marbles.velocity(), start.marbles.size(), camera_);
-        stills_.push_back(view_->image());
-        const std::string file = "still_" + file_number(step) + ".png";
-        course::save_png(program_.options.out / file, stills_.back());
-        captions_.push_back(
-            {file, course::format_number(step * double(start.dt_s)) + " s, step " + std::to_string(step)});
+        stills_.add(view_->image(), step, step * double(start.dt_s));
     }
 
     /// Everything gathered so far goes into the result; also when the run ends by an error.
     void finish() {
-        if (!stills_.empty()) {
-            for (course::Image& still : stills_) still = course::half_size(still);
-            course::save_png(program_.options.out / "time_lapse.png", course::contact_sheet(stills_, 3));
-            program_.result().picture("time_lapse.png", "Time lapse, row by row");
-        }
-        for (const auto& [file, caption] : captions_) program_.result().picture(file, caption);
+        stills_.finish();
         program_.result().table(table_);
     }
 
@@ -112,8 +99,7 @@ class Recorder {
     course::Table table_;
     std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
     std::unique_ptr<interop::TankView> view_;
-    std::vector<course::Image> stills_;
-    std::vector<std::pair<std::string, std::string>> captions_;
+    course::Stills stills_;
 };
 
 void run_headless(course::Program& program, const Settings& settings, Start& start) {
@@ -188,7 +174,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
         }
         view.draw(start.marbles.position(), start.marbles.velocity(), start.marbles.size(), orbit.camera());
         if (events.screenshot) {
-            const std::string file = "screenshot_" + file_number(step) + ".png";
+            const std::string file = "screenshot_" + course::file_number(step) + ".png";
             course::save_png(options.out / file, view.image());
             std::printf("%s\n", (options.out / file).string().c_str());
         }

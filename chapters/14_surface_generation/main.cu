@@ -10,6 +10,7 @@
 #include "common/gl_window.h"
 #include "common/gpu_timer.h"
 #include "common/program.h"
+#include "common/stills.h"
 
 namespace {
 
@@ -56,17 +57,14 @@ Settings make_settings(const course::ProgramOptions& options, const Choices& cho
     return settings;
 }
 
-std::string file_number(int number) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%06d", number);
-    return text;
-}
-
 /// The run as pictures and numbers. Stills are written as they come: what a run that fails has shown stays.
 class Recorder {
   public:
     Recorder(course::Program& program, const Settings& settings, const sph::Start& start)
-        : program_(program), settings_(settings), camera_(interop::first_view(tank_of(settings)).camera()) {
+        : program_(program),
+          settings_(settings),
+          camera_(interop::first_view(tank_of(settings)).camera()),
+          stills_(program) {
         if (settings.drawing == Drawing::none) {  // numbers alone: no OpenGL, and no normals
             numbers_ = std::make_unique<Surface>(settings.surface);
             return;
@@ -91,10 +89,7 @@ class Recorder {
             return;
         }
         view_->draw(start.water, camera_);
-        stills_.push_back(view_->image());
-        const std::string file = "still_" + file_number(step) + ".png";
-        course::save_png(program_.options.out / file, stills_.back());
-        captions_.push_back({file, course::format_number(time_s) + " s, step " + std::to_string(step)});
+        stills_.add(view_->image(), step, time_s);
         if (const Surface* surface = view_->surface())
             drawn_.row(
                 {step, time_s, surface->brick_count(), surface->size().vertices, surface->size().triangles});
@@ -105,11 +100,8 @@ class Recorder {
         if (!stills_.empty()) {
             program_.result().note("OpenGL " + context_->info().version + ", " + context_->info().renderer +
                                    "; handover: " + view_->handover());
-            for (course::Image& still : stills_) still = course::half_size(still);
-            course::save_png(program_.options.out / "time_lapse.png", course::contact_sheet(stills_, 3));
-            program_.result().picture("time_lapse.png", "Time lapse, row by row");
+            stills_.finish();
         }
-        for (const auto& [file, caption] : captions_) program_.result().picture(file, caption);
         if (settings_.drawing == Drawing::none) program_.result().table(table_);
         if (settings_.drawing == Drawing::surface) program_.result().table(drawn_);
     }
@@ -126,8 +118,7 @@ class Recorder {
     DeviceMesh mesh_{Normals::none};
     std::unique_ptr<course::GlContext> context_;  // before the view: its objects must go first
     std::unique_ptr<View> view_;
-    std::vector<course::Image> stills_;
-    std::vector<std::pair<std::string, std::string>> captions_;
+    course::Stills stills_;
 };
 
 /// The mesh as a file: the one case where it comes to the host.
@@ -200,7 +191,7 @@ void run_window(course::Program& program, const Choices& choices, const Settings
         }
         view.draw(start.water, orbit.camera());
         if (events.screenshot) {
-            const std::string file = "screenshot_" + file_number(step) + ".png";
+            const std::string file = "screenshot_" + course::file_number(step) + ".png";
             course::save_png(options.out / file, view.image());
             std::printf("%s\n", (options.out / file).string().c_str());
         }

@@ -11,6 +11,7 @@
 #include "common/gl_context.h"
 #include "common/gpu_timer.h"
 #include "common/program.h"
+#include "common/stills.h"
 
 namespace {
 
@@ -94,12 +95,6 @@ class Costs {
     std::vector<std::string> order_;
     std::map<std::string, std::vector<double>> times_;
 };
-
-std::string file_number(int number) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%06d", number);
-    return text;
-}
 
 /// The same water at the same moment, from the cheapest picture to the dearest.
 course::Image side_by_side(const Look& look, const WaterScene& scene, const Run& run, int width_px,
@@ -252,7 +247,7 @@ void run_window(course::Program& program, const Choices& choices, const WaterSce
         }
         view->draw(*run, seen.camera());
         if (events.screenshot) {
-            const std::string file = "screenshot_" + file_number(step) + ".png";
+            const std::string file = "screenshot_" + course::file_number(step) + ".png";
             course::save_png(o.out / file, view->image());
             std::printf("%s\n", (o.out / file).string().c_str());
         }
